@@ -1,0 +1,55 @@
+# Runs and tests dynsim_ros from its source tree; needs GNU make and Python 3.10 to 3.13, nothing else.
+# `make help` lists the targets. Everything that is set up lies in .venv, made on first use by tools/set_up.
+
+VENV := .venv
+SETTINGS := setup.py setup.cfg pyproject.toml tools/set_up
+PYTHON ?=
+export PYTHON
+export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
+
+# The environment is made anew where it stands for another place or another ROS, or has lost its python.
+export MADE_FOR := $(if $(filter jazzy,$(ROS_DISTRO)),jazzy,wheels) $(CURDIR)
+ifneq ($(MADE_FOR)/$(wildcard $(VENV)/bin/python),$(file <$(VENV)/made_for)/$(VENV)/bin/python)
+STALE := stale
+endif
+
+# What `make run` hands to the node: only what was asked for, the node knows its own defaults.
+PARAMETERS = -p record.enable:=true \
+	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
+
+.DELETE_ON_ERROR:
+.PHONY: help run test lint clean stale
+
+help:
+	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
+	@echo '               DURATION=10                 stop after 10 s of simulated time'
+	@echo '               SCENE=spinning_box          a scene of scenes/, or the path of a YAML file'
+	@echo "               ARGS='-p rate:=200.0'       more ROS arguments for the node"
+	@echo "make test    run the test suite            ARGS='-k bag -x' hands options to pytest"
+	@echo 'make lint    check the style'
+	@echo 'make clean   remove .venv, caches and build output; recorded runs stay'
+	@echo
+	@echo 'The first run makes .venv: with the sourced ROS 2 Jazzy, else with its packages from PyPI.'
+	@echo 'PYTHON=/path/to/python3.12 chooses the Python (3.10 to 3.13) that .venv is made from.'
+
+run: $(VENV)/ready
+	@exec tools/in_venv sim_node --status --ros-args $(PARAMETERS) $(ARGS)
+
+test: $(VENV)/ready_for_tests
+	@exec tools/in_venv python -m pytest $(ARGS)
+
+lint: $(VENV)/ready_for_tests
+	@tools/in_venv python -m flake8
+	@tools/in_venv ruff check --quiet .
+
+clean:
+	@rm -rf $(VENV) build dist install log *.egg-info .pytest_cache .ruff_cache
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/ready: $(SETTINGS) $(STALE)
+	@tools/set_up $(VENV)
+	@touch $@
+
+$(VENV)/ready_for_tests: $(SETTINGS) $(STALE)
+	@tools/set_up $(VENV) test
+	@touch $(VENV)/ready $@

@@ -1,0 +1,209 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""What an MCAP file holds and where: from its summary, or by a scan where that is missing."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from io import BytesIO
+import os
+import struct
+from typing import BinaryIO, NamedTuple
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.reader import SeekingReader
+from mcap.records import Channel, Metadata, Schema
+
+from .records import (
+    DamagedChunk,
+    HEAD,
+    MAGIC,
+    MESSAGE,
+    messages_in,
+    open_chunk,
+    parts,
+    Record,
+    walk,
+)
+
+# Messages outside chunks are read in portions of about this many bytes.
+_PORTION = 256 * 1024
+
+
+class Block(NamedTuple):
+    """A stretch of a file that is read at once: first and last log time, first byte, end."""
+
+    start_ns: int
+    end_ns: int
+    start: int
+    end: int
+
+
+@dataclass
+class Index:
+    """
+    The content of a file, without the messages themselves.
+
+    counts: messages by channel id. problem: one line where the file is not whole, else None.
+    """
+
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    counts: Counter = field(default_factory=Counter)
+    blocks: list[Block] = field(default_factory=list)
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    attachments: list[Record] = field(default_factory=list)
+    problem: str | None = None
+
+
+def read_index(stream: BinaryIO) -> Index:
+    """Return the index of a file that begins with MCAP's magic bytes."""
+    size = stream.seek(0, os.SEEK_END)
+    stream.seek(0)
+    try:
+        index = _from_summary(stream, size)
+    except (McapError, ValueError, struct.error, OSError, StopIteration, KeyError):
+        index = None
+    return index or _Scan(stream, size).index
+
+
+def _from_summary(stream: BinaryIO, size: int) -> Index | None:
+    """Return the index that the summary gives, None where it lacks something."""
+    summary = SeekingReader(stream).get_summary()
+    statistics = summary and summary.statistics
+    if not statistics or (
+            len(summary.channels), len(summary.schemas), len(summary.chunk_indexes),
+            len(summary.attachment_indexes), len(summary.metadata_indexes)
+            ) != (statistics.channel_count, statistics.schema_count, statistics.chunk_count,
+                  statistics.attachment_count, statistics.metadata_count
+                  ) or (statistics.message_count and not summary.chunk_indexes):
+        return None
+    index = Index(summary.schemas, summary.channels, Counter(statistics.channel_message_counts))
+    index.blocks = [
+        Block(chunk.message_start_time, chunk.message_end_time, chunk.chunk_start_offset,
+              chunk.chunk_start_offset + chunk.chunk_length)
+        for chunk in summary.chunk_indexes]
+    index.attachments = [
+        next(walk(stream, entry.offset, size)) for entry in summary.attachment_indexes]
+    for entry in summary.metadata_indexes:
+        _add_metadata(index, next(walk(stream, entry.offset, size)).read(stream))
+    return index
+
+
+def _add_metadata(index: Index, content: bytes):
+    """Add a metadata record; of two with one name, what the later one says counts."""
+    record = Metadata.read(_stream(content))
+    index.metadata.setdefault(record.name, {}).update(record.metadata)
+
+
+def _stream(content: bytes) -> ReadDataStream:
+    """Return bytes as the MCAP library reads them."""
+    return ReadDataStream(BytesIO(content))
+
+
+class _Scan:
+    """Reads a file from its beginning to where it ends, or breaks off."""
+
+    def __init__(self, stream: BinaryIO, size: int):
+        """Read the file."""
+        self.index = Index()
+        self._stream = stream
+        self._finished = False
+        self._damaged = 0
+        self._portion: Block | None = None
+        end = len(MAGIC)
+        for record in walk(stream, end, size):
+            try:
+                self._add(record)
+            except (DamagedChunk, McapError, struct.error, UnicodeDecodeError):
+                self._damaged += 1
+            end = record.end
+            if self._finished:
+                break
+        self._end_portion()
+        self.index.problem = self._problem(end, size)
+
+    def _add(self, record: Record):
+        """Take in one record."""
+        if record.opcode == Opcode.MESSAGE:
+            self._stream.seek(record.start + HEAD.size)
+            channel_id, _, log_ns, _ = MESSAGE.unpack(self._stream.read(MESSAGE.size))
+            self._add_message(record, channel_id, log_ns)
+        elif record.opcode == Opcode.CHUNK:
+            self._add_chunk(record)
+        elif record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            self._declare(record.opcode, record.read(self._stream))
+        elif record.opcode == Opcode.METADATA:
+            _add_metadata(self.index, record.read(self._stream))
+        elif record.opcode == Opcode.ATTACHMENT:
+            self.index.attachments.append(record)
+        elif record.opcode == Opcode.FOOTER:
+            self._finished = True
+
+    def _declare(self, opcode: int, content: bytes):
+        """Take in a schema or a channel."""
+        if opcode == Opcode.SCHEMA:
+            schema = Schema.read(_stream(content))
+            self.index.schemas[schema.id] = schema
+        else:
+            channel = Channel.read(_stream(content))
+            self.index.channels[channel.id] = channel
+
+    def _add_chunk(self, record: Record):
+        """Take in what a chunk declares and the times of its messages."""
+        data = open_chunk(record.read(self._stream))
+        messages = list(messages_in(data))
+        for opcode, start, end in parts(data):
+            if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+                self._declare(opcode, data[start:end])
+        if messages:
+            self._end_portion()
+            self.index.counts.update(message.channel_id for message in messages)
+            times = [message.log_ns for message in messages]
+            self.index.blocks.append(Block(min(times), max(times), record.start, record.end))
+
+    def _add_message(self, record: Record, channel_id: int, log_ns: int):
+        """Take in a message outside any chunk."""
+        self.index.counts[channel_id] += 1
+        block = self._portion or Block(log_ns, log_ns, record.start, record.end)
+        self._portion = Block(min(block.start_ns, log_ns), max(block.end_ns, log_ns),
+                              block.start, record.end)
+        if record.end - block.start > _PORTION:
+            self._end_portion()
+
+    def _end_portion(self):
+        """Close the run of messages outside chunks."""
+        if self._portion:
+            self.index.blocks.append(self._portion)
+            self._portion = None
+
+    def _problem(self, end: int, size: int) -> str | None:
+        """Return one line that says what is wrong with the file, None where nothing is."""
+        faults = []
+        if not self._finished:
+            faults.append(self._how_it_ends(end, size))
+        if self._damaged:
+            faults.append(f'{self._damaged} damaged record(s) left out')
+        if not faults:
+            return None
+        blocks = self.index.blocks
+        count = self.index.counts.total()
+        if not count:
+            return f"{' and '.join(faults)}: no message could be read"
+        seconds = (max(block.end_ns for block in blocks)
+                   - min(block.start_ns for block in blocks)) * 1e-9
+        return f"{' and '.join(faults)}: {count} messages up to {seconds:.2f} s could be read"
+
+    def _how_it_ends(self, end: int, size: int) -> str:
+        """Return what is at the place where the scan stopped."""
+        if end == size:
+            return 'the file was not finished'
+        self._stream.seek(end)
+        opcode = self._stream.read(1)[0]
+        if opcode == 0:
+            return f'the file is damaged from byte {end} on'
+        what = 'chunk' if opcode == Opcode.CHUNK else 'record'
+        return f'the file ends in the middle of a {what}'

@@ -1,0 +1,169 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A thread that writes a bag, so that a simulation's tick never waits for the disk."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+import threading
+import time
+
+from dynsim_ros.messages.qos import Qos, STATE
+
+from .writer import BagWriter
+
+# How often the thread looks for work, and how long a message may stay outside the file, in s.
+_PERIOD = 0.05
+_FLUSH_PERIOD = 0.5
+
+# The interpreter is handed back to the tick after so many messages (about 0.3 ms of work).
+_SLICE = 64
+_YIELD = 20e-6
+
+
+class Recorder:
+    """
+    Writes what `put` hands over, in a thread of its own.
+
+    Nothing raises into the caller: when the bag cannot be written, `error` says why and what
+    follows counts as lost. messages: number in the bag, the chunk in progress included; lost:
+    number handed over that are not and will not be in the bag; error: one line, or None.
+    """
+
+    def __init__(self, writer: BagWriter, *, capacity: int = 20_000, wait: bool = False):
+        """
+        Start the thread, which owns the writer from here on.
+
+        capacity: number of `put`s that may be waiting. Beyond it messages are lost, or with
+        `wait` (for runs that are not bound to real time) `put` waits for the disk.
+        """
+        self.error: str | None = None
+        self._writer = writer
+        self._capacity = capacity
+        self._wait = wait
+        self._queue: deque = deque()
+        self._put = self._queue.append
+        self._lost = 0
+        self._overflow = 0
+        self._writer_lock = threading.RLock()
+        self._wake = threading.Event()
+        self._closing = False
+        self._thread = threading.Thread(target=self._run, name='bag recorder', daemon=True)
+        self._thread.start()
+
+    @property
+    def messages(self) -> int:
+        """Return the number of messages in the bag."""
+        return self._writer.message_count
+
+    @property
+    def lost(self) -> int:
+        """Return the number of messages handed over that are not in the bag."""
+        return self._lost + self._overflow
+
+    @property
+    def path(self):
+        """Return the path of the bag."""
+        return self._writer.path
+
+    def put(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]]):
+        """
+        Hand over the messages of one instant, as (channel id, CDR bytes), at a time in ns.
+
+        Returns at once; to be called from one thread only. After `close` messages are lost.
+        """
+        if len(self._queue) >= self._capacity or self._closing:
+            if not self._make_room():
+                self._overflow += len(messages)
+                return
+        self._put((stamp_ns, messages))
+
+    def add_channel(self, topic: str, type_name: str, qos: Qos = STATE) -> int:
+        """Declare a topic, as `BagWriter.add_channel` does."""
+        with self._writer_lock:
+            return self._writer.add_channel(topic, type_name, qos)
+
+    def add_metadata(self, name: str, values: Mapping[str, str]):
+        """Append a metadata record; a failed write is kept in `error`."""
+        self._attempt(self._writer.add_metadata, name, values)
+
+    def add_attachment(self, name: str, data: bytes, media_type: str):
+        """Append an attachment; a failed write is kept in `error`."""
+        self._attempt(self._writer.add_attachment, name, data, media_type)
+
+    def close(self):
+        """Write what is waiting, finish the file and end the thread; harmless when repeated."""
+        self._closing = True
+        self._wake.set()
+        self._thread.join()
+        while self._queue:
+            self._overflow += len(self._queue.popleft()[1])
+
+    def __enter__(self) -> Recorder:
+        """Return the recorder."""
+        return self
+
+    def __exit__(self, *_):
+        """Close the bag."""
+        self.close()
+
+    def _make_room(self) -> bool:
+        """Wait for the thread if that is wanted; tell whether there is room now."""
+        while self._wait and not self._closing and len(self._queue) >= self._capacity:
+            self._wake.set()
+            time.sleep(0.001)
+        return len(self._queue) < self._capacity and not self._closing
+
+    def _run(self):
+        """Write batches until the recorder is closed and nothing waits any more."""
+        flushed = time.monotonic()
+        while not self._closing:
+            self._wake.wait(_PERIOD)
+            self._wake.clear()
+            self._drain()
+            if time.monotonic() - flushed > _FLUSH_PERIOD:
+                self._flush()
+                flushed = time.monotonic()
+        self._drain()
+        self._attempt(self._writer.close)
+
+    def _drain(self):
+        """Write everything that waits, letting other threads run between slices."""
+        written = 0
+        while self._queue:
+            stamp_ns, messages = self._queue.popleft()
+            self._attempt(self._write, stamp_ns, messages, count=len(messages))
+            written += len(messages)
+            if written >= _SLICE and not self._closing:
+                written = 0
+                time.sleep(_YIELD)
+
+    def _write(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]]):
+        """Append the messages of one instant."""
+        for channel_id, data in messages:
+            self._writer.write(channel_id, stamp_ns, data)
+
+    def _flush(self):
+        """Bring the chunk in progress into the file."""
+        if self._writer.pending:
+            self._attempt(self._writer.flush)
+
+    def _attempt(self, call, *arguments, count: int = 0):
+        """Call the writer; keep the first error and count the messages that it costs."""
+        with self._writer_lock:
+            before = self._writer.message_count
+            try:
+                call(*arguments)
+            except Exception as error:
+                # Whatever it is, the simulation goes on and the error is shown where it counts.
+                self._lost += before + count - self._writer.message_count
+                if self.error is None:
+                    self.error = self._describe(error)
+
+    def _describe(self, error: Exception) -> str:
+        """Return one line that says what happened to the bag."""
+        if isinstance(error, OSError):
+            return (f'{self.path} cannot be written: {error.strerror or error}; it holds the '
+                    f'first {self.messages} messages, later ones are lost')
+        return str(error) or type(error).__name__

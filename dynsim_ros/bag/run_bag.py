@@ -1,0 +1,91 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The bag of a run: its states, its commands, and in which scene and settings it began."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from datetime import datetime, timezone
+import json
+from pathlib import Path
+
+from .recorder import Recorder
+from .writer import BagWriter
+from .. import __version__
+from ..messages.commands import command_messages, command_topics
+from ..messages.qos import COMMAND
+from ..scene import get_value, scene_quantities, scene_to_yaml
+
+SCENE_ATTACHMENT = 'scene.yaml'
+RUN_METADATA = 'dynsim_ros'
+PARAMETER_METADATA = 'parameters'
+
+
+class RunBag:
+    """
+    Records one epoch of a run.
+
+    channels: what is recorded besides commands; node: full name of the node, prefix of relative
+    topics; parameters: {name: value} beside those of scene and settings. The messages of a tick
+    are handed over as {topic: CDR bytes}. Raises OSError or ValueError if the file cannot be
+    made; it is never overwritten.
+    """
+
+    def __init__(self, path, simulator, channels, *, node='/dynsim', compression='zstd',
+                 parameters=None, wait=False):
+        """Create the file and write down how the run stands."""
+        path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        writer = BagWriter(path, compression=compression, library=f'dynsim_ros {__version__}')
+        writer.add_attachment(SCENE_ATTACHMENT, scene_to_yaml(simulator.scene).encode(),
+                              'application/yaml')
+        writer.add_metadata(RUN_METADATA, _run_metadata(simulator, node))
+        values = {**_scene_values(simulator.scene), **asdict(simulator.settings),
+                  **(parameters or {})}
+        writer.add_metadata(PARAMETER_METADATA,
+                            {name: json.dumps(value) for name, value in values.items()})
+        self._ids = {
+            topic: writer.add_channel(_resolved(topic, node), type_name, qos)
+            for topic, type_name, qos in [
+                *((channel.topic, channel.type_name, channel.qos) for channel in channels),
+                *((topic, name, COMMAND) for topic, name
+                  in command_topics(simulator.scene).items())]}
+        self.recorder = Recorder(writer, wait=wait)
+        self.path = path
+
+    def put(self, stamp_ns, messages):
+        """Record {topic: CDR bytes} at a time [ns]."""
+        ids = self._ids
+        self.recorder.put(stamp_ns, [(ids[topic], data) for topic, data in messages.items()])
+
+    def put_command(self, stamp_ns, command):
+        """Record a command that took effect at a time [ns]."""
+        messages = command_messages(command, stamp_ns)
+        self.recorder.put(stamp_ns, [(self._ids[topic], data) for topic, data in messages])
+
+    def close(self):
+        """Finish the file; harmless when repeated."""
+        self.recorder.close()
+
+
+def _resolved(topic, node):
+    return topic if topic.startswith('/') else f'{node}/{topic}'
+
+
+def _run_metadata(simulator, node):
+    return {'version': __version__, 'scene': simulator.scene.name, 'node': node,
+            'epoch': str(simulator.epoch), 'start_tick': str(simulator.tick),
+            'start_time_ns': str(simulator.time_ns),
+            'recorded_at': datetime.now(timezone.utc).isoformat(timespec='seconds')}
+
+
+def _scene_values(scene):
+    return {name: get_value(scene, name) for name in scene_quantities(scene)}
+
+
+def new_path(directory, scene_name):
+    """Return a path for a new bag: the scene's name and the time of day, and not yet there."""
+    stem = f'{scene_name}_{datetime.now():%Y%m%d_%H%M%S}'
+    candidates = (Path(directory, f'{stem}{suffix}.mcap') for suffix in
+                  ('', *(f'_{i}' for i in range(2, 1000))))
+    return next(path for path in candidates if not path.exists())

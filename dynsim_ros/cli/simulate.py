@@ -1,0 +1,187 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The executable `simulate`: runs a scene without ROS processes, as fast as it can."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import time
+
+import yaml
+
+from .progress import Progress
+
+_DESCRIPTION = """\
+Simulate a scene into a bag, without any ROS process and as fast as the machine can.
+
+The bag is the same that the live node records: same topics, same bytes. SCENE is the name of a
+scene that comes with the package, or the path of a YAML file."""
+
+_EPILOG = """
+settings and quantities for --set, with their defaults:
+{settings}
+  and every quantity of the scene, such as gravity [m/s^2], <body>.mass [kg],
+  <body>.position [m], <spring>.stiffness [N/m]; lists as [x,y,z], quaternions as [x,y,z,w]
+
+a file of commands is a YAML list:
+  - {{time: 1.0, anchor: hand, position: [0.2, 0, 2]}}           s, m
+  - {{time: 2.0, body: sphere, force: [0, 5, 0]}}                N (also torque: N m)
+  - {{time: 3.0, set: {{spring.stiffness: 200, gravity: 1.62}}}}
+
+scenes: {scenes}
+
+examples:
+  simulate sphere_on_spring --duration 10 --output run.mcap
+  simulate two_anchors --set rate=1000 step=0.0005 sphere.mass=0.8 --commands pull.yaml"""
+
+
+def main(args=None) -> int:
+    """
+    Simulate; return 0, 2 with an error on stderr, 1 if the motion diverged, 130 if stopped.
+
+    The bag is finished in any case.
+    """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    options = _parser().parse_args(args)
+    try:
+        return _simulate(options)
+    except (ValueError, ImportError) as error:
+        print(f'error: {error}', file=sys.stderr)
+    except OSError as error:
+        print(f'error: {error.filename or options.output}: {error.strerror}; choose another '
+              '--output', file=sys.stderr)
+    except KeyboardInterrupt:
+        return 130
+    return 2
+
+
+def _simulate(options) -> int:
+    # Imported here so that --help is quick.
+    from ..bag.run_bag import new_path, RunBag
+    from ..messages.scene_channels import scene_channels
+    from ..scene import load_scene
+    from ..simulation.command_file import read_commands
+    from ..simulation.offline import OfflineRun, simulator_with
+
+    simulator = simulator_with(load_scene(options.scene), _values(options.set))
+    commands = read_commands(options.commands, simulator.scene) if options.commands else []
+    path = options.output or new_path('runs', simulator.scene.name)
+    progress = Progress(options.duration, quiet=options.quiet)
+    progress.say(f'{simulator.scene.name}: {options.duration:g} s with '
+                 f'{simulator.settings.integrator} at {simulator.settings.rate:g} Hz')
+    simulator.prepare()
+    channels = scene_channels(simulator.scene, simulator.layout)
+    bag = RunBag(path, simulator, channels, compression=options.compression, wait=True)
+    started = time.monotonic()
+    run = OfflineRun(simulator, commands, _Sink(bag, channels, progress))
+    try:
+        status = _run(run, options.duration)
+    finally:
+        bag.close()
+        progress.clear()
+    elapsed = time.monotonic() - started
+    progress.say(f'{simulator.time:g} s simulated in {elapsed:.2f} s '
+                 f'({simulator.time / elapsed:.0f} times real time); '
+                 f'{bag.recorder.messages} messages in {bag.path}')
+    if bag.recorder.error:
+        print(f'error: {bag.recorder.error}', file=sys.stderr)
+        return 2
+    return status
+
+
+def _run(run, duration) -> int:
+    from ..simulation import DivergenceError
+
+    try:
+        run.run(duration)
+    except DivergenceError as error:
+        print(f'error: {error}', file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+class _Sink:
+    """Takes the snapshots and commands of a run into a bag."""
+
+    def __init__(self, bag, channels, progress):
+        self._bag = bag
+        self._channels = channels
+        self._progress = progress
+        self._next = 0.0
+
+    def snapshot(self, snapshot, tick_ns):
+        """Record what is due at a tick, and show how far the run is."""
+        time_ns = snapshot.time_ns
+        self._bag.put(time_ns, {channel.topic: channel.encode(snapshot, time_ns)
+                                for channel in self._channels
+                                if channel.is_due(snapshot.tick, tick_ns)})
+        if time.monotonic() >= self._next:
+            self._next = time.monotonic() + 0.1
+            self._progress.show(time_ns * 1e-9)
+
+    def command(self, time_ns, command):
+        """Record a command that took effect."""
+        self._bag.put_command(time_ns, command)
+
+
+def _values(assignments) -> dict:
+    """Return {name: value} from texts NAME=VALUE; raise ValueError."""
+    values = {}
+    for text in assignments:
+        name, equals, value = text.partition('=')
+        if not equals or not name:
+            raise ValueError(f"--set: '{text}' is not of the form NAME=VALUE")
+        try:
+            values[name.strip()] = yaml.safe_load(value)
+        except yaml.YAMLError:
+            raise ValueError(f"--set: the value of '{text}' is neither a number nor a list "
+                             'such as [0,0,1]') from None
+    return values
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        'simulate', description=_DESCRIPTION, epilog=_epilog(), allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    add = parser.add_argument
+    add('scene', metavar='SCENE', help='name of a scene, or the path of a YAML file')
+    add('-d', '--duration', type=_seconds, default=10.0, metavar='SECONDS',
+        help='simulated time (default 10 s)')
+    add('-o', '--output', metavar='FILE',
+        help='the bag; never overwritten (default runs/<scene>_<date>_<time>.mcap)')
+    add('-s', '--set', nargs='+', action='extend', default=[], metavar='NAME=VALUE',
+        help='change quantities of the scene and settings before the start')
+    add('-c', '--commands', metavar='FILE', help='timed commands, a YAML file')
+    add('--compression', choices=('zstd', 'lz4', 'none'), default='zstd',
+        help='of the bag (default zstd)')
+    add('-q', '--quiet', action='store_true', help='print errors only')
+    return parser
+
+
+def _epilog() -> str:
+    from ..scene import scene_names
+    from ..simulation.settings import setting_description, SETTING_NAMES, Settings
+
+    settings = Settings()
+    rows = [f'  {name:22} {getattr(settings, name)!s:10} {setting_description(name)}'
+            for name in SETTING_NAMES]
+    return _EPILOG.format(settings='\n'.join(rows), scenes=', '.join(scene_names()))
+
+
+def _seconds(text) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 < value <= 1e9:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds above 0 and up to "
+                                         '1e9')
+    return value
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,49 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A line of status that is drawn again and again on a terminal, and now and then elsewhere."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import time
+
+_TERMINAL_PERIOD, _PLAIN_PERIOD = 0.1, 1.0
+
+
+class StatusLine:
+    """
+    Shows one line on standard output; on a terminal in place, elsewhere as plain lines.
+
+    enabled: False to show nothing.
+    """
+
+    def __init__(self, enabled=True):
+        self.enabled = enabled
+        self._in_place = sys.stdout.isatty()
+        self._drawn = False
+        self._next = 0.0
+
+    def is_due(self) -> bool:
+        """Tell whether it is time to show the line again."""
+        return self.enabled and time.monotonic() >= self._next
+
+    def show(self, text: str):
+        """Show the line now."""
+        if not self.enabled:
+            return
+        self._next = time.monotonic() + (_TERMINAL_PERIOD if self._in_place else _PLAIN_PERIOD)
+        if self._in_place:
+            width = shutil.get_terminal_size().columns - 1
+            sys.stdout.write(f'\r\x1b[K{text[:width]}')
+            self._drawn = True
+        else:
+            sys.stdout.write(f'{text}\n')
+        sys.stdout.flush()
+
+    def end(self):
+        """Leave the line as it is and go on below it."""
+        if self._drawn:
+            sys.stdout.write('\n')
+            sys.stdout.flush()
+            self._drawn = False

@@ -1,0 +1,60 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Explicit Euler (sheet, 4.1 and 4.2), the quaternion updated by the matrix H and normalised.
+
+Order 1; simple, and poor: energy grows. For comparison and teaching.
+"""
+
+from ..physics.jit import formula, kernel
+from ..physics.motion import accelerations
+from ..physics.rotation import quaternion_rate, rotation_matrix
+from ..physics.state import (normalise, omega_at, put_quaternion, quaternion, quaternion_at,
+                             velocity_at)
+from ..physics.vector import at, transform_back
+
+
+@formula
+def turn(bodies, rigid, h, y):
+    """Write q[k + 1] = q[k] + h H omega[k] / 2 for every rigid body; normalise is to follow."""
+    for i in range(rigid):
+        j = quaternion_at(bodies) + 4 * i
+        q = quaternion(y, j)
+        omega = at(y, omega_at(bodies, rigid) + 3 * i)
+        rate = quaternion_rate(q, transform_back(rotation_matrix(q), omega))
+        put_quaternion(y, j, (q[0] + h * rate[0], q[1] + h * rate[1], q[2] + h * rate[2],
+                              q[3] + h * rate[3]))
+
+
+@formula
+def translate(bodies, rigid, h, a, y):
+    """Write positions, velocities, angular velocities and works of step k + 1; all use step k."""
+    for i in range(3 * bodies):
+        y[i] += h * y[velocity_at(bodies) + i]
+    for i in range(velocity_at(bodies), quaternion_at(bodies)):
+        y[i] += h * a[i]
+    for i in range(omega_at(bodies, rigid), y.shape[0]):
+        y[i] += h * a[i]
+
+
+@kernel
+def advance(model, anchors, pushes, t_ns, h_ns, steps, y, work):
+    """
+    Take a number of steps of length h_ns, beginning at time t_ns.
+
+    model: Model; anchors: (n, 6) position [m] and velocity [m/s] in world at time 0; pushes:
+    forces [N] and torques [N m] laid out as the state; t_ns, h_ns: integers [ns], so that the
+    times of the steps do not depend on how many of them are taken at once; y: state, replaced;
+    work: (5, state_size), overwritten.
+    Returns the sum over the steps of what normalising the quaternions removed.
+    """
+    bodies = model.mass.shape[0]
+    a = work[0]
+    h = h_ns * 1e-9
+    removed = 0.0
+    for k in range(steps):
+        accelerations(model, anchors, pushes, (t_ns + k * h_ns) * 1e-9, y, a)
+        turn(bodies, model.rigid, h, y)
+        translate(bodies, model.rigid, h, a, y)
+        removed += normalise(bodies, model.rigid, y)
+    return removed

@@ -1,0 +1,45 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""One topic of a run: its name and type, and how its messages come out of a snapshot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .qos import Qos, STATE
+
+WORLD = 'world'
+_SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Channel:
+    """
+    A topic that is published from the state of a run.
+
+    topic: relative to the node, such as 'sphere/pose'; type_name: of its messages;
+    encode(snapshot, stamp_ns): returns one message as CDR bytes; interval_ns: the time that
+    passes at least between two messages [ns], 0 for every tick.
+    """
+
+    topic: str
+    type_name: str
+    encode: Callable
+    qos: Qos = STATE
+    interval_ns: int = 0
+
+    def is_due(self, tick: int, tick_ns: int) -> bool:
+        """Tell whether a tick is one at which this channel has a message."""
+        return self.interval_ns <= tick_ns or tick % -(-self.interval_ns // tick_ns) == 0
+
+
+def stamp(stamp_ns: int) -> tuple[int, int]:
+    """Return (sec, nanosec) of a time [ns]."""
+    return divmod(stamp_ns, _SECOND)
+
+
+def header(stamp_ns: int) -> dict:
+    """Return a std_msgs/Header in the world frame."""
+    sec, nanosec = stamp(stamp_ns)
+    return {'stamp': {'sec': sec, 'nanosec': nanosec}, 'frame_id': WORLD}

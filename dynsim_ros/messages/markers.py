@@ -1,0 +1,153 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A scene as markers for RViz and Foxglove: bodies with their axes, anchors, springs as coils."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .cdr import Template
+from .channel import Channel, stamp, WORLD
+from ..physics.rotation import rotate
+from ..scene import Box, Rigid, Sphere
+from ..scene.orientation import to_ros
+
+MARKERS = 'visualization_msgs/msg/MarkerArray'
+_INTERVAL_NS = 40_000_000
+# visualization_msgs/Marker: kinds of marker.
+_CUBE, _SPHERE, _LINE_STRIP, _LINE_LIST = 1, 2, 4, 5
+_BODY, _ANCHOR, _SPRING = (0.25, 0.5, 0.9, 0.8), (0.9, 0.3, 0.2, 1.0), (0.6, 0.6, 0.6, 1.0)
+_AXES = ((0.9, 0.1, 0.1, 1.0), (0.1, 0.7, 0.1, 1.0), (0.1, 0.2, 0.95, 1.0))
+_IDENTITY = (0.0, 0.0, 0.0, 1.0)
+
+# A coil: turns between straight ends, as distance along the spring and angle about it.
+_COIL_ALONG = np.linspace(0.1, 0.9, 65)
+_COIL_ANGLES = np.linspace(0.0, 8 * 2.0 * np.pi, 65)
+
+
+def marker_channel(scene):
+    """Return the Channel 'markers' of a scene, at most 25 times a second."""
+    scale = _scale(scene)
+    parts = [part for i, body in enumerate(scene.bodies) for part in _body(body, i, scale)]
+    parts += [_anchor(i, scale) for i in range(len(scene.anchors))]
+    parts += [_spring(scene, spring, i, scale) for i, spring in enumerate(scene.springs)]
+    pack = Template(MARKERS, {'markers': [marker for marker, _ in parts]}).pack
+
+    def encode_markers(snapshot, stamp_ns):
+        sec, nanosec = stamp(stamp_ns)
+        values = []
+        for _, numbers in parts:
+            values += (sec, nanosec)
+            values += numbers(snapshot)
+        return pack(*values)
+
+    return Channel('markers', MARKERS, encode_markers, interval_ns=_INTERVAL_NS)
+
+
+def _scale(scene):
+    """Return a length to draw by what has no size of its own [m]."""
+    sizes = [min(_size(body, 0.1)) for body in scene.bodies if isinstance(body, (Sphere, Box))]
+    lengths = [0.2 * spring.natural_length for spring in scene.springs if spring.natural_length]
+    return min([*sizes, *lengths], default=0.1)
+
+
+def _size(body, scale):
+    if isinstance(body, Sphere):
+        return (2.0 * body.radius,) * 3
+    if isinstance(body, Box):
+        return body.size
+    return (scale,) * 3
+
+
+def _marker(namespace, number, kind, scale, color, **more):
+    """Return a visualization_msgs/Marker with every number fixed but stamp, pose and points."""
+    return {
+        'header': {'frame_id': WORLD}, 'ns': namespace, 'id': number, 'type': kind, 'action': 0,
+        'scale': _xyz(scale), 'color': _rgba(color), 'lifetime': {'sec': 0, 'nanosec': 0},
+        'frame_locked': False, 'points': [], 'colors': [],
+        'texture': {'header': {'stamp': {'sec': 0, 'nanosec': 0}}, 'data': []},
+        'uv_coordinates': [], 'mesh_file': {'data': []}, 'mesh_use_embedded_materials': False,
+        **more}
+
+
+def _xyz(a):
+    return {'x': float(a[0]), 'y': float(a[1]), 'z': float(a[2])}
+
+
+def _xyzw(q):
+    return dict(zip('xyzw', map(float, q)))
+
+
+def _rgba(color):
+    return dict(zip('rgba', color))
+
+
+# Each of the following gives a marker and what fills in its free numbers from a snapshot.
+
+def _body(body, number, scale):
+    size = _size(body, scale)
+    kind = _CUBE if isinstance(body, Box) else _SPHERE
+    if not isinstance(body, Rigid):
+        fixed = {'orientation': _xyzw(_IDENTITY)}
+        yield (_marker('bodies', number, kind, size, _BODY, pose=fixed),
+               lambda snapshot: snapshot.position(body.name).tolist())
+        return
+
+    def pose(snapshot):
+        return (*snapshot.position(body.name).tolist(),
+                *to_ros(snapshot.orientation(body.name).tolist()))
+
+    yield _marker('bodies', number, kind, size, _BODY), pose
+    # The axes reach through the surface, so that the spin shows.
+    ends = [_xyz([0.65 * size[axis] * end * (i == axis) for i in range(3)])
+            for axis in range(3) for end in (0.0, 1.0)]
+    colors = [_rgba(_AXES[axis]) for axis in range(3) for _ in range(2)]
+    yield _marker('axes', number, _LINE_LIST, (0.06 * max(size), 0.0, 0.0), _SPRING, points=ends,
+                  colors=colors), pose
+
+
+def _anchor(number, scale):
+    marker = _marker('anchors', number, _CUBE, (0.4 * scale,) * 3, _ANCHOR,
+                     pose={'orientation': _xyzw(_IDENTITY)})
+    return marker, lambda snapshot: snapshot.anchors[number, :3].tolist()
+
+
+def _spring(scene, spring, number, scale):
+    radius = 0.15 * scale
+    marker = _marker('springs', number, _LINE_STRIP, (0.04 * scale, 0.0, 0.0), _SPRING,
+                     pose={'position': _xyz((0, 0, 0)), 'orientation': _xyzw(_IDENTITY)},
+                     points=[{}] * (len(_COIL_ALONG) + 2))
+
+    def points(snapshot):
+        return coil(_end(scene, spring.from_, spring.from_offset, snapshot),
+                    _end(scene, spring.to, spring.to_offset, snapshot), radius).ravel().tolist()
+
+    return marker, points
+
+
+def _end(scene, name, offset, snapshot):
+    """Return where an end of a spring is: (3,) in world [m]."""
+    if name in snapshot.layout.anchors:
+        return snapshot.anchor_position(name)
+    position = snapshot.position(name)
+    member = scene.ends[name]
+    if not isinstance(member, Rigid):
+        return position
+    offset = member.default_offset if offset is None else offset
+    return position + rotate.py_func(snapshot.orientation(name).tolist(), offset)
+
+
+def coil(p, q, radius):
+    """Return (n, 3) points of a helix with straight ends from p to q, both (3,) in world [m]."""
+    along = q - p
+    length = np.linalg.norm(along)
+    # A spring of no length has no direction either: any will do.
+    u = along / length if length > 1e-9 else np.array([0.0, 0.0, 1.0])
+    across = np.zeros(3)
+    across[np.argmin(np.abs(u))] = 1.0
+    first = across - np.dot(across, u) * u
+    first /= np.linalg.norm(first)
+    second = np.cross(u, first)
+    turns = (np.outer(_COIL_ALONG, along) + radius * np.outer(np.cos(_COIL_ANGLES), first)
+             + radius * np.outer(np.sin(_COIL_ANGLES), second))
+    return np.vstack([p, p + turns, q])

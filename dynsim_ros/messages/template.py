@@ -1,0 +1,117 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A message of one fixed size, ready to be filled with numbers and sent, many times a second."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+import struct
+
+from .checks import check_elements, fields_for
+from .definitions import Field
+from .primitives import code, LITTLE_ENDIAN, number_bytes, SIZES, string_bytes
+
+
+class Template:
+    """
+    A message type with some values fixed; the other numbers are filled in by `pack`.
+
+    fixed: nested dict of what stays the same: strings (those not given are ''), the sequences
+    (each has to be given, its length stays), and any numbers. leaves: dotted names of all other
+    numbers in wire order, such as 'header.stamp.sec' or 'pose.position.x'. size: of the message
+    in bytes, with the 4-byte header.
+    """
+
+    def __init__(self, type_name: str, fixed: Mapping | None = None):
+        """Lay the message out; raises ValueError naming the field where it has no fixed size."""
+        self.type_name = type_name
+        leaves = []
+        # Each segment is a constant and the slice of the values that follow it.
+        segments = []
+        layout = ['<']
+        constant = bytearray(LITTLE_ENDIAN)
+        at = 0
+        for path, alignment, content in _items(type_name, fixed or {}, type_name, ''):
+            padding = -at % alignment
+            size = len(content) if isinstance(content, bytes) else alignment
+            at += padding + size
+            if isinstance(content, bytes):
+                constant += bytes(padding) + content
+                continue
+            if constant:
+                constant += bytes(padding)
+                layout.append(f'{len(constant)}s')
+                segments.append([bytes(constant), len(leaves), len(leaves)])
+                constant.clear()
+            else:
+                layout.append(f'{padding}x')
+            layout.append(content)
+            leaves.append(path)
+            segments[-1][2] += 1
+        if constant:
+            layout.append(f'{len(constant)}s')
+            segments.append([bytes(constant), len(leaves), len(leaves)])
+        # The last slice is open, so that a value too many is an error, not left out.
+        segments[-1][2] = None
+        self.leaves = tuple(leaves)
+        self.size = at + len(LITTLE_ENDIAN)
+        self._segments = tuple(map(tuple, segments))
+        self._pack = struct.Struct(''.join(layout)).pack
+
+    def pack(self, *values) -> bytes:
+        """
+        Return the message as CDR bytes; values: one number for each of `leaves`, in order.
+
+        Raises ValueError for a wrong count or a value that does not fit its type.
+        """
+        arguments = []
+        for constant, start, end in self._segments:
+            arguments.append(constant)
+            arguments += values[start:end]
+        try:
+            return self._pack(*arguments)
+        except (struct.error, OverflowError) as error:
+            if len(values) != len(self.leaves):
+                raise ValueError(f'{self.type_name}: {len(values)} values for {len(self.leaves)} '
+                                 f'leaves ({", ".join(self.leaves)})') from None
+            raise ValueError(f'{self.type_name}: {values} does not fit: {error}') from None
+
+
+def _items(type_name: str, fixed, where: str, prefix: str) -> Iterator[tuple]:
+    """Yield (leaf name, alignment, constant bytes or struct letter) in wire order."""
+    fields = fields_for(type_name, fixed, where)
+    if not fields:
+        yield prefix, 1, b'\0'
+    for field in fields:
+        path, value = f'{where}.{field.name}', fixed.get(field.name)
+        if value is None and field.type_name == 'string':
+            value = field.default
+        if not field.is_sequence and field.length is None:
+            yield from _item(field.type_name, value, path, prefix + field.name)
+        else:
+            yield from _array(field, value, path, prefix + field.name)
+
+
+def _array(field: Field, value, where: str, name: str) -> Iterator[tuple]:
+    """Yield the items of a fixed array, or of a sequence whose elements are given."""
+    if value is None and field.is_sequence:
+        raise ValueError(f'{where} is a sequence, so {field.type_name}[] has no fixed size: give '
+                         'its elements, or use encode()')
+    elements = [None] * field.length if value is None else value
+    check_elements(field, elements, where)
+    if field.is_sequence:
+        yield name, 4, struct.pack('<I', len(elements))
+    for index, element in enumerate(elements):
+        yield from _item(field.type_name, element, where, f'{name}.{index}')
+
+
+def _item(type_name: str, value, where: str, name: str) -> Iterator[tuple]:
+    """Yield the items of one value."""
+    if '/' in type_name:
+        yield from _items(type_name, {} if value is None else value, where, f'{name}.')
+    elif type_name == 'string':
+        yield name, 4, string_bytes('' if value is None else value, where)
+    elif value is None:
+        yield name, SIZES.get(type_name, 1), code(type_name, where)
+    else:
+        yield name, SIZES.get(type_name, 1), number_bytes(type_name, [value], where)

@@ -1,0 +1,128 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The loops over springs and bodies that add up forces and moments.
+
+Forces lie in arrays that are laid out as the state: the force on a body where its velocity is,
+the moment about its centre of mass where its angular velocity is, and the power of dampers, air
+and anchors where their work is. Several arrays may be the same one: then the sum comes out.
+"""
+
+from .air_resistance import air_force, air_torque
+from .energy import power
+from .equations_of_motion import moment_of_force
+from .jit import formula
+from .kinematics import attachment_arm, attachment_position, attachment_velocity
+from .spring_damper import damper_force, length_and_direction, length_rate, spring_force
+from .state import omega_at, quaternion, quaternion_at, velocity_at, work_at
+from .vector import accumulate, add, at, scale, subtract
+
+
+@formula
+def anchor_motion(anchors, i, t):
+    """Return position and velocity of anchor i at time t; anchors: (n, 6) position, velocity."""
+    velocity = at(anchors[i], 3)
+    return add(at(anchors[i], 0), scale(t, velocity)), velocity
+
+
+@formula
+def particle_motion(bodies, i, y):
+    """Return position and velocity in world of the centre of mass of body i."""
+    return at(y, 3 * i), at(y, velocity_at(bodies) + 3 * i)
+
+
+@formula
+def point_motion(bodies, rigid, i, offset, y):
+    """Return position and velocity in world of an attachment point of body i, and its arm."""
+    position, velocity = particle_motion(bodies, i, y)
+    omega = at(y, omega_at(bodies, rigid) + 3 * i)
+    arm = attachment_arm(quaternion(y, quaternion_at(bodies) + 4 * i), offset)
+    return attachment_position(position, arm), attachment_velocity(velocity, omega, arm), arm
+
+
+# The branches on None in the next two functions are decided when they are compiled: a kind of
+# end that a group of springs does not have is not in its code.
+
+@formula
+def end_motion(bodies, rigid, anchor, particle, body, offset, s, anchors, t, y):
+    """Return position, velocity and arm (points: zero) of one end of spring s."""
+    arm = (0.0, 0.0, 0.0)
+    if anchor is not None:
+        position, velocity = anchor_motion(anchors, anchor[s], t)
+    if particle is not None:
+        position, velocity = particle_motion(bodies, particle[s], y)
+    if body is not None:
+        position, velocity, arm = point_motion(bodies, rigid, body[s], at(offset[s], 0), y)
+    return position, velocity, arm
+
+
+@formula
+def apply_at_end(bodies, rigid, particle, body, s, arm, force, out):
+    """Add a force at an end of spring s, and its moment, to what acts on the body there."""
+    if particle is not None:
+        accumulate(out, velocity_at(bodies) + 3 * particle[s], force)
+    if body is not None:
+        accumulate(out, velocity_at(bodies) + 3 * body[s], force)
+        accumulate(out, omega_at(bodies, rigid) + 3 * body[s], moment_of_force(arm, force))
+
+
+@formula
+def apply_at_ends(bodies, rigid, p, q, s, p_arm, q_arm, force, out):
+    """Add a spring's force on Q to what Q is on and its opposite to what P is on."""
+    apply_at_end(bodies, rigid, q.particle, q.body, s, q_arm, force, out)
+    apply_at_end(bodies, rigid, p.particle, p.body, s, p_arm, scale(-1.0, force), out)
+
+
+@formula
+def anchor_power(p_anchor, q_anchor, v_p, v_q, force):
+    """Return the power of the anchors that hold a spring whose force on Q is given [W]."""
+    total = 0.0
+    if p_anchor is not None:
+        total += power(force, v_p)
+    if q_anchor is not None:
+        total -= power(force, v_q)
+    return total
+
+
+@formula
+def apply_springs(bodies, rigid, p, q, stiffness, natural_length, epsilon, damping, anchors, t,
+                  y, spring_out, damper_out):
+    """Add forces and moments of one SpringGroup; t: [s] since the anchors were as given."""
+    work = work_at(bodies, rigid)
+    for s in range(stiffness.shape[0]):
+        r_p, v_p, p_arm = end_motion(bodies, rigid, p.anchor, p.particle, p.body, p.offset, s,
+                                     anchors, t, y)
+        r_q, v_q, q_arm = end_motion(bodies, rigid, q.anchor, q.particle, q.body, q.offset, s,
+                                     anchors, t, y)
+        length, u = length_and_direction(subtract(r_q, r_p), epsilon[s])
+        force = spring_force(stiffness[s], length, natural_length[s], u)
+        apply_at_ends(bodies, rigid, p, q, s, p_arm, q_arm, force, spring_out)
+        spring_out[work + 2] += anchor_power(p.anchor, q.anchor, v_p, v_q, force)
+        if damping is not None:
+            rate = length_rate(subtract(v_q, v_p), u)
+            resisting = damper_force(damping[s], rate, u)
+            apply_at_ends(bodies, rigid, p, q, s, p_arm, q_arm, resisting, damper_out)
+            damper_out[work] -= damping[s] * rate * rate
+            damper_out[work + 2] += anchor_power(p.anchor, q.anchor, v_p, v_q, resisting)
+
+
+@formula
+def apply_linear_drag(bodies, rigid, linear_drag, air_velocity, y, out):
+    """Add the air's force on every body."""
+    work = work_at(bodies, rigid)
+    for i in range(velocity_at(bodies), quaternion_at(bodies), 3):
+        velocity = at(y, i)
+        force = air_force(linear_drag, velocity, air_velocity)
+        accumulate(out, i, force)
+        out[work + 1] += power(force, velocity)
+
+
+@formula
+def apply_rotational_drag(bodies, rigid, rotational_drag, air_angular_velocity, y, out):
+    """Add the air's torque on every rigid body."""
+    work = work_at(bodies, rigid)
+    for i in range(omega_at(bodies, rigid), work, 3):
+        omega = at(y, i)
+        torque = air_torque(rotational_drag, omega, air_angular_velocity)
+        accumulate(out, i, torque)
+        out[work + 1] += power(torque, omega)

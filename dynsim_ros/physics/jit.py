@@ -1,0 +1,109 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Compile a function with numba and keep the machine code on disk between processes.
+
+The cache lies in the user's cache folder, under a digest of the sources of all kernels: numba
+itself notices a change only in the file of the function it compiles, not in what that calls.
+"""
+
+from contextlib import contextmanager
+import hashlib
+import os
+from pathlib import Path
+import shutil
+import tempfile
+
+import numba
+
+# The caches of older sources that are kept, for other installations of the package.
+_CACHES_KEPT = 4
+
+
+def _digest():
+    package = Path(__file__).parent.parent
+    sources = sorted(path for room in ('physics', 'integrators')
+                     for path in (package / room).glob('*.py'))
+    return hashlib.sha256(b''.join(path.read_bytes() for path in sources)).hexdigest()[:16]
+
+
+def _cache_directory():
+    """Return a folder that can be written to, or None."""
+    digest = _digest()
+    for root in _cache_roots():
+        directory = root / 'kernels' / digest
+        try:
+            new = not directory.exists()
+            # Machine code is loaded from here: each folder must be the user's own.
+            for folder in (root, root / 'kernels', directory):
+                folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+                if folder.stat().st_uid != os.getuid():
+                    raise PermissionError(f'{folder} belongs to another user')
+            if os.access(directory, os.W_OK):
+                if new:
+                    _forget_oldest(directory.parent)
+                return directory
+        except OSError:
+            continue
+    return None
+
+
+def _cache_roots():
+    """Return where a cache may lie, best place first."""
+    roots = [Path(os.environ.get('XDG_CACHE_HOME', ''), 'dynsim_ros'),
+             Path(os.path.expanduser('~'), '.cache', 'dynsim_ros')]
+    try:
+        roots.append(Path(tempfile.gettempdir(), f'dynsim_ros-{os.getuid()}'))
+    except FileNotFoundError:
+        pass  # there is no folder for temporary files that can be written to
+    # Relative: the variable is not set (or wrong), or the user has no home.
+    return [root for root in roots if root.is_absolute()]
+
+
+def _forget_oldest(parent):
+    caches = sorted(parent.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
+    for old in caches[_CACHES_KEPT:]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+_DIRECTORY = _cache_directory()
+
+
+@contextmanager
+def _our_cache():
+    """Let numba choose our folder for what is decorated meanwhile, and nothing else."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(_DIRECTORY)
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def _compiled(function, **more):
+    # Without reference counting (_nrt): the kernels allocate nothing, and counting the arrays of
+    # a model at every step took three quarters of the time of a step.
+    options = {'error_model': 'numpy', 'nogil': True, 'fastmath': False, '_nrt': False, **more}
+    if numba.config.DISABLE_JIT:
+        function.py_func = function
+        return function
+    if _DIRECTORY is None:
+        return numba.njit(**options)(function)
+    with _our_cache():
+        return numba.njit(cache=True, **options)(function)
+
+
+def kernel(function):
+    """
+    Compile a function that is called from Python; it must not allocate.
+
+    Division by zero gives infinity, as in C; fastmath is off, so that the same scene gives the
+    same bits in every run. The plain function stays as the attribute py_func; with numba's
+    environment variable NUMBA_DISABLE_JIT=1 it is what is returned.
+    """
+    return _compiled(function)
+
+
+def formula(function):
+    """Compile a function as kernel does, to be inlined wherever it is used."""
+    return _compiled(function, forceinline=True)

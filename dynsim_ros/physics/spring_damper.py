@@ -1,0 +1,41 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Translational spring-damper between the points P and Q (sheet, 1.1).
+
+All forces act on Q from P, in world [N]; those on P are their opposites.
+"""
+
+from .jit import formula
+from .vector import dot, norm, scale
+
+
+@formula
+def length_and_direction(r, epsilon):
+    """
+    Return L = |r| [m] and the unit vector u to Q from P.
+
+    r: (3,) position of Q from P in world [m]; epsilon: [m] keeps u finite (zero) at L = 0: u is
+    r / (L + epsilon). The model's epsilon changes no bit of u unless L is below a thousandth of
+    the spring's own lengths.
+    """
+    length = norm(r)
+    return length, scale(1.0 / (length + epsilon), r)
+
+
+@formula
+def spring_force(stiffness, length, natural_length, u):
+    """Return -k (L - L_n) u; stiffness k [N/m], lengths [m], u: (3,) to Q from P."""
+    return scale(-stiffness * (length - natural_length), u)
+
+
+@formula
+def length_rate(v, u):
+    """Return dL/dt = v . u [m/s]; v: (3,) velocity of Q relative to P in world [m/s]."""
+    return dot(v, u)
+
+
+@formula
+def damper_force(damping, rate, u):
+    """Return -b dL/dt u; damping b [N s/m], rate dL/dt [m/s], u: (3,) to Q from P."""
+    return scale(-damping * rate, u)

@@ -1,0 +1,27 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""Simulated time on /clock."""
+
+from rclpy.qos import QoSProfile
+
+from .message_types import message_class
+from ..messages.cdr import Template
+from ..messages.channel import stamp
+
+_CLOCK = 'rosgraph_msgs/msg/Clock'
+
+
+class ClockPublisher:
+    """Publishes /clock; the publisher is made when it is first needed."""
+
+    def __init__(self, node):
+        self._node = node
+        self._publisher = None
+        self._pack = Template(_CLOCK).pack
+
+    def publish(self, stamp_ns):
+        """Publish a time [ns]."""
+        if self._publisher is None:
+            self._publisher = self._node.create_publisher(
+                message_class(_CLOCK), '/clock', QoSProfile(depth=1))
+        self._publisher.publish(self._pack(*stamp(stamp_ns)))

@@ -1,0 +1,77 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""Commands by topic: anchors, pushes, single parameters."""
+
+from geometry_msgs.msg import PointStamped, WrenchStamped
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rclpy.parameter import Parameter
+from rclpy.qos_overriding_options import QoSOverridingOptions
+
+from .qos import profile
+from ..messages.channel import WORLD
+from ..messages.commands import anchor_topic, PARAMETER_TOPIC, push_topic
+from ..messages.qos import COMMAND
+from ..scene import SceneError
+from ..simulation import CommandError, MoveAnchor, PushBody
+
+# At most one warning of each kind in so many seconds.
+_THROTTLE = 1.0
+
+
+class Commands:
+    """
+    Subscribes to the command topics of a scene and hands what is valid to the run.
+
+    A refused command leaves the state as it is; it is counted in run.refused, and a warning
+    (throttled) says what is wrong with it.
+    """
+
+    def __init__(self, node, run):
+        self._node = node
+        self._run = run
+        scene = run.simulator.scene
+        for anchor in scene.anchors:
+            self._subscribe(PointStamped, anchor_topic(anchor.name),
+                            lambda message, name=anchor.name: self._move(name, message))
+        for body in scene.bodies:
+            self._subscribe(WrenchStamped, push_topic(body.name),
+                            lambda message, name=body.name: self._push(name, message))
+        self._subscribe(ParameterMessage, PARAMETER_TOPIC, self._set)
+
+    def _subscribe(self, message_type, topic, callback):
+        def guarded(message):
+            try:
+                callback(message)
+            except SceneError as error:
+                self._run.refused += 1
+                self._node.get_logger().warning(f'~/{topic} refused: {error}',
+                                                throttle_duration_sec=_THROTTLE)
+
+        self._node.create_subscription(
+            message_type, f'~/{topic}', guarded, profile(COMMAND),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies())
+
+    def _move(self, anchor, message):
+        _check_frame(message.header)
+        self._run.command(MoveAnchor(anchor, _numbers(message.point)))
+
+    def _push(self, body, message):
+        _check_frame(message.header)
+        self._run.command(PushBody(body, _numbers(message.wrench.force),
+                                   _numbers(message.wrench.torque)))
+
+    def _set(self, message):
+        parameter = Parameter.from_parameter_msg(message)
+        result = self._node.set_parameters_atomically([parameter])
+        if not result.successful:
+            raise CommandError(result.reason)
+
+
+def _check_frame(header):
+    """Raise CommandError unless a command is in the world frame (or names none)."""
+    if header.frame_id not in ('', WORLD):
+        raise CommandError(f"frame '{header.frame_id}' is not known; give it in '{WORLD}'")
+
+
+def _numbers(vector):
+    return (vector.x, vector.y, vector.z)

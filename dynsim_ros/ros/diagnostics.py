@@ -1,0 +1,91 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The state of the run and its recorder, once a second, on /diagnostics."""
+
+import time
+
+from .message_types import message_class
+from .qos import profile
+from .run import DIAGNOSTICS
+from ..messages.cdr import encode
+from ..messages.channel import header
+
+_OK, _WARN, _ERROR = 0, 1, 2
+
+
+class Diagnostics:
+    """Publishes a DiagnosticArray; real_time_factor and rate are those since the last one."""
+
+    def __init__(self, node, run, pacer):
+        self._run = run
+        self._pacer = pacer
+        self._name = node.get_name()
+        self._publisher = node.create_publisher(
+            message_class(DIAGNOSTICS.type_name), DIAGNOSTICS.topic, profile(DIAGNOSTICS.qos))
+        self.real_time_factor = 0.0
+        self.rate = 0.0
+        self.begin()
+
+    def begin(self):
+        """Begin to measure the rate here."""
+        simulator = self._run.simulator
+        self._since = (time.monotonic(), simulator.time_ns, simulator.tick)
+
+    def measure(self):
+        """Bring real_time_factor and rate up to date: what was achieved since the last call."""
+        wall, time_ns, tick = self._since
+        elapsed = time.monotonic() - wall
+        if elapsed > 0.1:
+            simulator = self._run.simulator
+            self.real_time_factor = (simulator.time_ns - time_ns) * 1e-9 / elapsed
+            self.rate = (simulator.tick - tick) / elapsed
+            self.begin()
+
+    def publish(self):
+        """Publish and record one array."""
+        self.measure()
+        statuses = [self._run_status(), self._energy_status(), self._recorder_status()]
+        data = encode(DIAGNOSTICS.type_name,
+                      {'header': header(self._run.stamp_ns), 'status': statuses})
+        self._publisher.publish(data)
+        self._run.record({DIAGNOSTICS.topic: data})
+
+    def _run_status(self):
+        run, simulator = self._run, self._run.simulator
+        if simulator.failure is not None:
+            level, message = _ERROR, simulator.failure
+        else:
+            level, message = _OK, 'paused' if run.paused else 'running'
+        return self._status('run', level, message, {
+            'simulated time [s]': f'{simulator.time:.9f}', 'tick': simulator.tick,
+            'epoch': simulator.epoch, 'rate achieved [Hz]': f'{self.rate:.1f}',
+            'real-time factor': f'{self.real_time_factor:.3f}',
+            'missed ticks': self._pacer.missed, 'late ticks': self._pacer.late,
+            'integrator': simulator.settings.integrator,
+            'messages not built (nobody listened)': run.topics.skipped,
+            'commands refused': run.refused})
+
+    def _energy_status(self):
+        energy = self._run.simulator.snapshot().energy
+        return self._status('energy', _OK, f'{energy.total:.9g} J', {
+            'kinetic [J]': f'{energy.kinetic:.9g}',
+            'gravitational [J]': f'{energy.gravitational:.9g}',
+            'spring [J]': f'{energy.spring:.9g}', 'total [J]': f'{energy.total:.9g}',
+            **{f'work of {name} [J]': f'{work:.9g}' for name, work in energy.work.items()},
+            'imbalance [J]': f'{energy.imbalance:.3g}',
+            'removed by normalising orientations':
+                f'{self._run.simulator.normalisation_removed:.3g}'})
+
+    def _recorder_status(self):
+        bag = self._run.bag
+        if bag is None:
+            return self._status('recorder', _OK, 'not recording', {})
+        recorder = bag.recorder
+        level = _ERROR if recorder.error else _WARN if recorder.lost else _OK
+        return self._status('recorder', level, recorder.error or 'recording', {
+            'file': bag.path, 'messages': recorder.messages, 'lost': recorder.lost})
+
+    def _status(self, task, level, message, values):
+        return {'level': level, 'name': f'{self._name}: {task}', 'message': message,
+                'hardware_id': self._run.simulator.scene.name,
+                'values': [{'key': key, 'value': str(value)} for key, value in values.items()]}

@@ -1,0 +1,48 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of the node itself, beside those of the scene and the settings of the run."""
+
+from dataclasses import dataclass
+
+from ..bag.writer import COMPRESSIONS
+from ..scene import did_you_mean, Quantity, SceneError
+
+
+@dataclass(frozen=True)
+class Own:
+    """A parameter of the node itself; choices: the strings allowed, None for any."""
+
+    default: object
+    description: str
+    quantity: Quantity | None = None
+    read_only: bool = False
+    choices: tuple | None = None
+
+
+OWN = {
+    'scene': Own('sphere_on_spring', 'name of a scene, or the path of a YAML file',
+                 read_only=True),
+    'real_time_factor': Own(1.0, 'simulated seconds per second, 0 = as fast as possible',
+                            Quantity('', 'real-time factor', minimum=0.0, maximum=1000.0)),
+    'publish_clock': Own(False, 'publish simulated time on /clock'),
+    'duration': Own(0.0, 'simulated time after which the node ends [s], 0 = never',
+                    Quantity('s', 'duration', minimum=0.0, maximum=1e9)),
+    'record.enable': Own(False, 'record from the start (later: service ~/record)',
+                         read_only=True),
+    'record.directory': Own('runs', 'folder for bags; a change holds for the next one'),
+    'record.compression': Own('zstd', 'compression of bags: ' + ', '.join(COMPRESSIONS)
+                              + '; a change holds for the next one', choices=tuple(COMPRESSIONS)),
+}
+
+
+def check_own(name, value):
+    """Return the value for one of the node's own parameters; raise SceneError."""
+    own = OWN[name]
+    if own.quantity is not None:
+        return own.quantity.check(name, value)
+    if not isinstance(value, type(own.default)):
+        kind = {bool: 'true or false', str: 'a text'}[type(own.default)]
+        raise SceneError(f'{name}: {value!r} is not {kind}')
+    if own.choices and value not in own.choices:
+        raise SceneError(f"{name}: '{value}' is not known; " + did_you_mean(value, own.choices))
+    return value

@@ -1,0 +1,67 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""How many ticks of simulated time are due, by a clock that may be late."""
+
+import time
+
+SECOND = 1_000_000_000
+# Ticks that are late by more than this much real time are given up and counted as missed.
+LONGEST_LAG = SECOND // 5
+# A timer is never asked for more calls a second than this; it then runs several ticks a call.
+SHORTEST_PERIOD = SECOND // 2000
+# With a real-time factor of 0: how long ticks may run before commands get their turn.
+BATCH = SECOND // 200
+
+
+class Pacer:
+    """
+    Ties simulated time to a clock.
+
+    factor: simulated seconds per second of the clock, 0 for as fast as possible; now: function
+    that returns the clock's time [ns]. missed: ticks given up; late: ticks made up for.
+    """
+
+    def __init__(self, factor, now=time.monotonic_ns):
+        self.factor = factor
+        self.now = now
+        self.missed = 0
+        self.late = 0
+        self.restart(0)
+
+    def restart(self, time_ns):
+        """Let the simulated time time_ns be now."""
+        self._clock_start = self.now()
+        self._time_start = time_ns
+
+    def period(self, tick_ns):
+        """Return how often to ask what is due [ns of the clock]."""
+        if self.factor == 0.0:
+            return SHORTEST_PERIOD
+        return max(round(tick_ns / self.factor), SHORTEST_PERIOD)
+
+    def ticks_due(self, time_ns, tick_ns):
+        """
+        Yield once for each tick that is due at simulated time time_ns.
+
+        The caller advances time by tick_ns each time round.
+        """
+        if self.factor == 0.0:
+            end = time.monotonic_ns() + BATCH
+            while True:
+                yield
+                if time.monotonic_ns() >= end:
+                    return
+        for _ in range(self._count_due(time_ns, tick_ns)):
+            yield
+
+    def _count_due(self, time_ns, tick_ns):
+        elapsed = self.now() - self._clock_start
+        due = int(self._time_start + elapsed * self.factor - time_ns) // tick_ns
+        usual = max(round(self.period(tick_ns) * self.factor / tick_ns), 1)
+        most = max(int(LONGEST_LAG * self.factor) // tick_ns, usual)
+        if due > most:
+            self.missed += due - most
+            self._time_start -= (due - most) * tick_ns
+            due = most
+        self.late += max(due - usual, 0)
+        return due

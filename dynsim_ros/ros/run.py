@@ -1,0 +1,124 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A live run: the simulator, what it publishes and records, and what happens to it."""
+
+from ..bag.run_bag import new_path, RunBag
+from ..messages.channel import Channel
+from ..messages.qos import STATE
+from ..scene import SceneError
+from ..simulation import DivergenceError, SetValues, Simulator
+
+DIAGNOSTICS = Channel('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', None, STATE)
+
+
+class Run:
+    """
+    What the node's timer, subscriptions and services act on; all of them in one thread.
+
+    simulator; topics: Topics; options: dict of the node's own parameters, always up to date;
+    name: full name of the node; log: its logger; origin_ns: added to simulated time in stamps.
+    """
+
+    def __init__(self, simulator: Simulator, topics, options, name, log):
+        self.simulator = simulator
+        self.topics = topics
+        self.bag = None
+        self.origin_ns = 0
+        self.refused = 0
+        self.paused = False
+        self._options = options
+        self._name = name
+        self._log = log
+        self._bag_error = None
+
+    @property
+    def stamp_ns(self):
+        """Return the stamp of the present instant [ns]."""
+        return self.origin_ns + self.simulator.time_ns
+
+    @property
+    def finished(self):
+        """Tell whether the run has lasted as long as it was to last."""
+        duration = self._options['duration']
+        return duration > 0.0 and self.simulator.time_ns >= round(duration * 1e9)
+
+    def tick(self):
+        """Advance by one tick and publish; if the motion diverges, pause and say why."""
+        try:
+            self.simulator.advance_tick()
+        except DivergenceError as error:
+            self.paused = True
+            self._log.error(f'paused: {error}')
+            return
+        self.publish()
+
+    def publish(self):
+        """Publish and record the present instant."""
+        tick_ns = self.simulator.settings.tick_ns
+        messages = self.topics.publish(self.simulator.snapshot(), self.stamp_ns, tick_ns,
+                                       self.bag is not None)
+        self.record(messages)
+
+    def record(self, messages):
+        """Record {topic: CDR bytes} at the present instant, if there is a bag."""
+        if self.bag is not None and messages:
+            self.bag.put(self.stamp_ns, messages)
+            self._report_bag_error()
+
+    def command(self, command):
+        """Carry out a command and record it; raise SceneError if it is refused."""
+        command = self.simulator.apply(command)
+        if self.bag is not None:
+            self.bag.put_command(self.stamp_ns, command)
+
+    def set_values(self, values):
+        """Carry out a change of quantities or settings that was checked before."""
+        if values:
+            self.command(SetValues(values))
+
+    def reset(self):
+        """Begin a new epoch with the initial scene; a bag ends and a new one begins."""
+        was_recording = self.bag is not None
+        self.stop_recording()
+        self.simulator.reset()
+        if was_recording:
+            try:
+                self.start_recording()
+            except SceneError as error:
+                self._log.error(str(error))
+
+    def start_recording(self):
+        """Begin a bag and return its path; raise SceneError if it cannot be made."""
+        if self.bag is not None:
+            raise SceneError(f'recording already, to {self.bag.path}')
+        directory = self._options['record.directory']
+        try:
+            self.bag = RunBag(
+                new_path(directory, self.simulator.scene.name), self.simulator,
+                [*self.topics.channels, DIAGNOSTICS], node=self._name,
+                compression=self._options['record.compression'], parameters=self._options,
+                wait=self._options['real_time_factor'] == 0.0)
+        except OSError as error:
+            raise SceneError(f'record.directory: {directory} cannot be written to: '
+                             f'{error.strerror or error}; choose another folder') from None
+        self._bag_error = None
+        self._log.info(f'recording to {self.bag.path}')
+        return self.bag.path
+
+    def stop_recording(self):
+        """End the bag and return what it holds, in words; None if there was none."""
+        if self.bag is None:
+            return None
+        bag, self.bag = self.bag, None
+        bag.close()
+        recorder = bag.recorder
+        lost = f', {recorder.lost} lost: {recorder.error or "the disk was too slow"}'
+        text = f'{recorder.messages} messages in {bag.path}' + (lost if recorder.lost else '')
+        self._log.info(f'recorded {text}')
+        return text
+
+    def _report_bag_error(self):
+        error = self.bag.recorder.error
+        if error is not None and error != self._bag_error:
+            self._bag_error = error
+            self._log.error(f'recorder: {error}; the run goes on')

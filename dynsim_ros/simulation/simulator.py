@@ -1,0 +1,243 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The simulator: the only place where time advances."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .anchors import Anchors
+from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
+from .layout import Layout
+from .settings import SECOND, SETTING_NAMES, Settings
+from .snapshot import Snapshot
+from .trajectory import Trajectory
+from ..integrators import method_named, WORK_ROWS
+from ..physics.energies import energies
+from ..physics.model import build_model
+from ..physics.state import initial_state, WORKS
+from ..scene import scene_quantities, SceneError, with_values
+
+
+# Of a state with larger numbers (SI) than this, energies and forces might not be finite.
+_LARGEST = 1e100
+
+
+class DivergenceError(ArithmeticError):
+    """The motion is no longer finite; the simulator stands at its last finite state."""
+
+
+class Simulator:
+    """
+    Runs a scene.
+
+    scene: Scene; settings: Settings, or its fields as keywords. Time is an integer number of
+    nanoseconds since the start of the epoch. The integrator's steps lie on a grid of its own,
+    which begins anew where a command takes effect; at an instant between two points of the grid
+    the state comes from a shorter step that is not kept. Who looks at the run, and how often,
+    changes no bit of it.
+    """
+
+    def __init__(self, scene, settings=None, **changes):
+        self.initial_scene = scene
+        self.initial_settings = replace(settings or Settings(), **changes)
+        self.epoch = -1
+        self.reset()
+
+    def reset(self):
+        """Go back to the initial scene and settings at time 0, in a new epoch."""
+        self.epoch += 1
+        self.scene = self.initial_scene
+        self.settings = self.initial_settings
+        self.time_ns = 0
+        self.tick = 0
+        self.failure = None
+        self.normalisation_removed = 0.0
+        self._build()
+        self.layout = Layout(self.scene)
+        self._work = np.empty((WORK_ROWS, self.layout.size))
+        self._state = initial_state(self.scene, self._model)
+        self._pushes = np.zeros_like(self._state)
+        self._push_ends = {}
+        self._anchors = Anchors(self.scene)
+        self._grid_ns = 0
+        self._grid_state = self._state.copy()
+        self._reference_energy = self._energy()
+
+    def _build(self):
+        self._model = build_model(self.scene)
+        self._advance = method_named(self.settings.integrator).advance
+
+    @property
+    def time(self):
+        """Return the simulated time [s]."""
+        return self.time_ns / SECOND
+
+    def snapshot(self):
+        """Return the Snapshot of the present instant."""
+        return Snapshot(self.time_ns, self.tick, self.epoch, self.layout, self._model,
+                        self._state.copy(), self._anchors.motion_at(self.time_ns),
+                        self._pushes.copy(), self._reference_energy)
+
+    def prepare(self):
+        """Compile, or load from the disk cache, all that a tick of this scene needs."""
+        self._integrated(self._state, self._grid_ns, 0, 0)
+        snapshot = self.snapshot()
+        return snapshot.net_forces, snapshot.energy
+
+    def advance_tick(self):
+        """Advance by one tick; raise DivergenceError if the motion is no longer finite."""
+        self.advance(self.settings.tick_ns)
+        self.tick += 1
+
+    def run(self, duration):
+        """Advance by a duration [s], rounded up to whole ticks; return a Trajectory."""
+        snapshots = [self.snapshot()]
+        end = self.time_ns + round(duration * SECOND)
+        while self.time_ns < end:
+            self.advance_tick()
+            snapshots.append(self.snapshot())
+        return Trajectory(snapshots)
+
+    def advance(self, duration_ns):
+        """Advance by an integer number of nanoseconds; raise DivergenceError as above."""
+        if self.failure is not None:
+            raise DivergenceError(self.failure)
+        end = self.time_ns + duration_ns
+        while (change := self._next_change()) is not None and change <= end:
+            self._integrate_to(change)
+            self._begin_here()
+            self._anchors.arrive()
+            self._end_pushes()
+        self._integrate_to(end)
+
+    def apply(self, command):
+        """
+        Carry out a command at the present instant, whole; what follows is under it.
+
+        Raises CommandError or SceneError, and has then changed nothing.
+        """
+        command = checked(command, self.scene)
+        if isinstance(command, MoveAnchor):
+            self._move_anchor(command)
+        elif isinstance(command, PushBody):
+            self._push(command)
+        elif isinstance(command, SetValues):
+            self._set_values(command.values)
+        else:
+            raise CommandError(f'{command!r} is no command')
+        return command
+
+    def changed_by(self, values):
+        """
+        Return (scene, settings) as they would be after SetValues(values); change nothing.
+
+        Raises SceneError for an unknown name, a wrong value, or an initial condition.
+        """
+        quantities = scene_quantities(self.scene)
+        for name in values:
+            if name in quantities and quantities[name].initial:
+                raise SceneError(f'{name}: is an initial condition, fixed once the run has begun; '
+                                 'give it at the start')
+        settings = {name: value for name, value in values.items() if name in SETTING_NAMES}
+        scene = {name: value for name, value in values.items() if name not in SETTING_NAMES}
+        return (with_values(self.scene, scene) if scene else self.scene,
+                replace(self.settings, **settings) if settings else self.settings)
+
+    def _next_change(self):
+        changes = [*self._push_ends.values()]
+        arrival = self._anchors.next_change()
+        if arrival is not None:
+            changes.append(arrival)
+        return min(changes, default=None)
+
+    def _integrate_to(self, end):
+        """Take the steps of the grid up to an instant, and the shorter one that remains."""
+        step = self.settings.step_ns
+        steps, rest = divmod(end - self._grid_ns, step)
+        grid_state, removed = self._integrated(self._grid_state, self._grid_ns, steps, step)
+        grid_ns = self._grid_ns + steps * step
+        state = grid_state
+        if rest:
+            state, _ = self._integrated(grid_state, grid_ns, 1, rest)
+        if not _is_finite(state):
+            self.failure = self._describe_failure(state, end)
+            raise DivergenceError(self.failure)
+        self._grid_state, self._grid_ns, self._state = grid_state, grid_ns, state
+        self.normalisation_removed += removed
+        self.time_ns = end
+
+    def _integrated(self, state, start_ns, steps, step):
+        state = state.copy()
+        removed = self._advance(self._model, self._anchors.motion, self._pushes,
+                                start_ns - self._anchors.since, step, steps, state, self._work)
+        return state, removed
+
+    def _describe_failure(self, state, end):
+        layout = self.layout
+        where = next((body for body in layout.bodies
+                      if not _is_finite(state[layout.position(body)])
+                      or not _is_finite(state[layout.velocity(body)])), layout.bodies[0])
+        return (f"the motion of '{where}' is no longer finite between {self.time:.9g} s and "
+                f'{end / SECOND:.9g} s of simulated time; the state of {self.time:.9g} s is kept; '
+                f'give a shorter step than {self.settings.step:g} s or smaller stiffness, damping '
+                'or drag, then reset')
+
+    def _begin_here(self):
+        """Let a step end at the present instant: what follows is under something new."""
+        self._grid_ns = self.time_ns
+        self._grid_state = self._state.copy()
+        self._anchors.rebase(self.time_ns)
+
+    def _move_anchor(self, command):
+        self._begin_here()
+        before = self._energy()
+        self._anchors.command(self.layout.anchors.index(command.anchor), command.position,
+                              self.settings.anchor_interpolation == 'linear',
+                              self.settings.tick_ns)
+        self._add_anchor_work(self._energy() - before)
+
+    def _add_anchor_work(self, work):
+        """Count the energy that a jump of an anchor gives to its springs as work of the anchor."""
+        place = self.layout.work.start + WORKS.index('anchor')
+        self._state[place] += work
+        self._grid_state[place] += work
+
+    def _push(self, command):
+        self._begin_here()
+        self._pushes[self.layout.velocity(command.body)] = command.force
+        if (place := self.layout.angular_velocity(command.body)) is not None:
+            self._pushes[place] = command.torque
+        self._push_ends.pop(command.body, None)
+        if self.settings.wrench_timeout and any((*command.force, *command.torque)):
+            timeout = round(self.settings.wrench_timeout * SECOND)
+            self._push_ends[command.body] = self.time_ns + max(timeout, 1)
+
+    def _end_pushes(self):
+        for body in [body for body, end in self._push_ends.items() if end <= self.time_ns]:
+            del self._push_ends[body]
+            self._pushes[self.layout.velocity(body)] = 0.0
+            if (place := self.layout.angular_velocity(body)) is not None:
+                self._pushes[place] = 0.0
+
+    def _set_values(self, values):
+        scene, settings = self.changed_by(values)
+        self._begin_here()
+        before = self._energy()
+        self.scene, self.settings = scene, settings
+        self._build()
+        for i, anchor in enumerate(scene.anchors):
+            if f'{anchor.name}.position' in values:
+                self._anchors.place(i, anchor.position)
+            if f'{anchor.name}.velocity' in values:
+                self._anchors.set_velocity(i, anchor.velocity)
+        self._reference_energy += self._energy() - before
+
+    def _energy(self):
+        return sum(energies(self._model, self._anchors.motion_at(self.time_ns), 0.0, self._state))
+
+
+def _is_finite(state):
+    """Return whether a state and all that is computed from it are finite numbers."""
+    # Not a number is not below anything.
+    return bool(np.abs(state).max() < _LARGEST)

@@ -1,0 +1,80 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+from pathlib import Path
+import re
+
+from setuptools import find_packages, setup
+
+NAME = 'dynsim_ros'
+SHARE = f'share/{NAME}'
+
+
+def version():
+    """Read the version where it is kept, without importing the package."""
+    text = Path(NAME, '__init__.py').read_text(encoding='utf-8')
+    return re.search(r"^__version__ = '([^']+)'$", text, re.MULTILINE).group(1)
+
+
+def files(folder):
+    """List the files in a folder that are installed to share/dynsim_ros/<folder>."""
+    return (f'{SHARE}/{folder}', sorted(
+        path.as_posix() for path in Path(folder).glob('*') if path.is_file()))
+
+
+setup(
+    name=NAME,
+    version=version(),
+    description='Rigid bodies on springs, simulated live on ROS 2 or offline',
+    author='the dynsim_ros authors',
+    maintainer='the dynsim_ros authors',
+    maintainer_email='dynsim_ros@users.noreply.github.com',
+    license='Apache-2.0',
+    packages=find_packages(exclude=['test', 'test.*']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (SHARE, ['package.xml']),
+        files('config'),
+        files('launch'),
+        files('scenes'),
+    ],
+    zip_safe=False,
+    python_requires='>=3.10',
+    # ROS itself is no requirement: a sourced installation brings it, else the extra 'ros'.
+    install_requires=[
+        'PyYAML>=5.4,<7',
+        'mcap>=1.1,<2',
+        'numba>=0.59,<1',
+        'numpy>=1.23,<3',
+        'zstandard>=0.17,<1',
+    ],
+    extras_require={
+        'ros': [
+            'ros-jazzy-common-interfaces>=5.3,<5.4',
+            'ros-jazzy-rclpy[fastrtps]>=7.1,<7.2',
+        ],
+        'test': [
+            'catkin_pkg>=1,<2',
+            'colcon-common-extensions>=0.3,<1',
+            'flake8>=6,<8',
+            'flake8-builtins>=2,<4',
+            'flake8-comprehensions>=3,<4',
+            'flake8-docstrings>=1.6,<2',
+            'flake8-import-order>=0.18,<1',
+            'flake8-quotes>=3.3,<4',
+            'mcap-ros2-support>=0.5,<1',
+            'pytest>=7.4,<9',
+            'pytest-timeout>=2.1,<3',
+            'rosbags>=0.10,<1',
+            'ruff>=0.11,<1',
+            'scipy>=1.9,<2',
+            'setuptools>=70.1,<80',
+        ],
+    },
+    entry_points={
+        'console_scripts': [
+            f'replay = {NAME}.cli.replay:main',
+            f'sim_node = {NAME}.cli.sim_node:main',
+            f'simulate = {NAME}.cli.simulate:main',
+        ],
+    },
+)

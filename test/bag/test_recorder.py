@@ -1,0 +1,138 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+import subprocess
+import sys
+import threading
+import time
+
+from bag_samples import sample_messages, TOPICS
+from dynsim_ros.bag.reader import open_bag
+from dynsim_ros.bag.recorder import Recorder
+from dynsim_ros.bag.writer import BagWriter
+import pytest
+
+DATA = b'\0\1\0\0' + bytes(8)
+
+
+@pytest.fixture
+def writer(tmp_path):
+    return BagWriter(tmp_path / 'run.mcap')
+
+
+def test_everything_put_is_in_the_bag(writer):
+    channels = {topic: writer.add_channel(topic, *what) for topic, what in TOPICS.items()}
+    messages = sample_messages(2000)
+    with Recorder(writer) as recorder:
+        for topic, stamp, data in messages:
+            recorder.put(stamp, [(channels[topic], data)])
+        recorder.add_metadata('settings', {'a': 'b'})
+        recorder.add_attachment('scene.yaml', b'x', 'application/yaml')
+    recorder.close()
+    assert (recorder.messages, recorder.lost, recorder.error) == (len(messages), 0, None)
+    assert not [thread for thread in threading.enumerate() if thread.name == 'bag recorder']
+    with open_bag(recorder.path) as bag:
+        assert list(bag.messages()) == messages and bag.complete
+        assert bag.metadata == {'settings': {'a': 'b'}}
+        assert bag.attachments == {'scene.yaml': ('application/yaml', b'x')}
+
+
+def test_messages_reach_the_file_while_recording(writer):
+    with Recorder(writer) as recorder:
+        channel = recorder.add_channel('/a', 'std_msgs/msg/UInt64')
+        recorder.put(0, [(channel, DATA)])
+        limit = time.monotonic() + 5
+        count = 0
+        while not count and time.monotonic() < limit:
+            time.sleep(0.05)
+            with open_bag(recorder.path) as bag:
+                count = bag.count
+        assert count == 1
+    with open_bag(recorder.path) as bag:
+        assert bag.complete and bag.count == 1
+
+
+def test_a_time_that_goes_back_is_kept_out(writer):
+    with Recorder(writer) as recorder:
+        channel = recorder.add_channel('/a', 'std_msgs/msg/UInt64')
+        for stamp in (5, 3, 6):
+            recorder.put(stamp, [(channel, DATA), (channel, DATA)])
+    assert (recorder.messages, recorder.lost) == (4, 2)
+    assert 'at 3 ns cannot follow one at 5 ns' in recorder.error
+    with open_bag(recorder.path) as bag:
+        assert [stamp for _, stamp, _ in bag.messages()] == [5, 5, 6, 6]
+
+
+def test_what_is_no_message_is_an_error_not_the_end(writer):
+    with Recorder(writer) as recorder:
+        channel = recorder.add_channel('/a', 'std_msgs/msg/UInt64')
+        recorder.put(0, [(channel, None)])
+        recorder.put(1, [(channel, DATA)])
+    assert recorder.lost == 1 and recorder.error
+
+
+def test_overflow_is_lost_and_counted_or_waited_for(tmp_path):
+    for wait in (False, True):
+        recorder = Recorder(BagWriter(tmp_path / f'{wait}.mcap'), capacity=10, wait=wait)
+        channel = recorder.add_channel('/a', 'std_msgs/msg/UInt64')
+        for stamp in range(3000):
+            recorder.put(stamp, [(channel, DATA)])
+        recorder.close()
+        assert recorder.messages + recorder.lost == 3000
+        assert (recorder.lost == 0) == wait
+        with open_bag(recorder.path) as bag:
+            assert bag.count == recorder.messages and bag.complete
+
+
+def test_put_after_close_is_lost(writer):
+    recorder = Recorder(writer)
+    recorder.close()
+    recorder.put(0, [(1, DATA)])
+    assert recorder.lost == 1
+
+
+FULL = """
+import resource, sys, time
+from bag_samples import sample_messages, TOPICS
+from dynsim_ros.bag.recorder import Recorder
+from dynsim_ros.bag.writer import BagWriter
+resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
+writer = BagWriter(sys.argv[1], compression='none', chunk_size=6000)
+channels = {topic: writer.add_channel(topic, *what) for topic, what in TOPICS.items()}
+recorder = Recorder(writer)
+for topic, stamp, data in sample_messages(1000):
+    recorder.put(stamp, [(channels[topic], data)])
+recorder.close()
+recorder.close()
+print(recorder.messages, recorder.lost)
+print(recorder.error)
+"""
+
+
+def test_a_full_disk_stops_the_bag_not_the_run(tmp_path):
+    path = tmp_path / 'run.mcap'
+    process = subprocess.run(
+        [sys.executable, '-c', f'import sys\nsys.path[:0] = {sys.path!r}\n{FULL}', str(path)],
+        capture_output=True, text=True, timeout=60)
+    assert (process.returncode, process.stderr) == (0, '')
+    counts, error = process.stdout.splitlines()
+    messages, lost = map(int, counts.split())
+    assert messages + lost == 2001 and messages > 100
+    assert error == (f'{path} cannot be written: File too large; it holds the first {messages} '
+                     'messages, later ones are lost')
+    with open_bag(path) as bag:
+        assert list(bag.messages()) == sample_messages(1000)[:messages]
+
+
+def test_put_is_cheap(writer):
+    with Recorder(writer) as recorder:
+        channel = recorder.add_channel('/a', 'std_msgs/msg/UInt64')
+        batch = [(channel, DATA)] * 8
+        times = []
+        for stamp in range(2000):
+            start = time.perf_counter()
+            recorder.put(stamp, batch)
+            times.append(time.perf_counter() - start)
+            time.sleep(0.0001)
+    # A loose bound: it would take the disk, or the writer's lock, to break it.
+    assert sorted(times)[len(times) // 2] < 50e-6
+    assert recorder.lost == 0

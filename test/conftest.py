@@ -1,0 +1,35 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Keep each test process to itself: on this machine, in a DDS domain of its own, with its own logs.
+
+All of it is set before anything imports rclpy, and is inherited by the processes that tests start.
+"""
+
+import os
+from pathlib import Path
+import shutil
+import tempfile
+
+from dds_domain import claim_domain
+
+ROOT = Path(__file__).resolve().parent.parent
+_DOMAIN, _DOMAIN_MARK = claim_domain()
+_LOGS = tempfile.mkdtemp(prefix='dynsim_ros_test_logs_')
+
+os.environ.update(
+    ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST', ROS_DOMAIN_ID=str(_DOMAIN), ROS_LOG_DIR=_LOGS)
+for _name in ('ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS', 'ROS_DISCOVERY_SERVER', 'ROS_NAMESPACE',
+              'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE'):
+    os.environ.pop(_name, None)
+# processes that tests start run this tree, installed or not
+os.environ['PYTHONPATH'] = os.pathsep.join(
+    [str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])
+
+
+def pytest_report_header():
+    return f'DDS domain {_DOMAIN}, discovery on this machine only'
+
+
+def pytest_unconfigure():
+    shutil.rmtree(_LOGS, ignore_errors=True)
