@@ -18,7 +18,7 @@ PARAMETERS = -p record.enable:=true \
 	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
 
 .DELETE_ON_ERROR:
-.PHONY: help run test lint clean stale
+.PHONY: help run test bench lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -26,6 +26,7 @@ help:
 	@echo '               SCENE=spinning_box          a scene of scenes/, or the path of a YAML file'
 	@echo "               ARGS='-p rate:=200.0'       more ROS arguments for the node"
 	@echo "make test    run the test suite            ARGS='-k bag -x' hands options to pytest"
+	@echo 'make bench   measure run time against error (minutes); table and plot go to benchmarks/'
 	@echo 'make lint    check the style'
 	@echo 'make clean   remove .venv, caches and build output; recorded runs stay'
 	@echo
@@ -37,6 +38,9 @@ run: $(VENV)/ready
 
 test: $(VENV)/ready_for_tests
 	@exec tools/in_venv python -m pytest $(ARGS)
+
+bench: $(VENV)/ready_for_benchmarks
+	@exec tools/in_venv python benchmarks/work_precision.py $(ARGS)
 
 lint: $(VENV)/ready_for_tests
 	@tools/in_venv python -m flake8
@@ -52,4 +56,8 @@ $(VENV)/ready: $(SETTINGS) $(STALE)
 
 $(VENV)/ready_for_tests: $(SETTINGS) $(STALE)
 	@tools/set_up $(VENV) test
+	@touch $(VENV)/ready $@
+
+$(VENV)/ready_for_benchmarks: $(SETTINGS) $(STALE)
+	@tools/set_up $(VENV) bench
 	@touch $(VENV)/ready $@

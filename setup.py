@@ -42,7 +42,7 @@ setup(
     # ROS itself is no requirement: a sourced installation brings it, else the extra 'ros'.
     install_requires=[
         'PyYAML>=5.4,<7',
-        'mcap>=1.1,<2',
+        'mcap>=1.5,<2',
         'numba>=0.59,<1',
         'numpy>=1.23,<3',
         'zstandard>=0.17,<1',
@@ -52,6 +52,7 @@ setup(
             'ros-jazzy-common-interfaces>=5.3,<5.4',
             'ros-jazzy-rclpy[fastrtps]>=7.1,<7.2',
         ],
+        'bench': ['matplotlib>=3.6,<4', 'scipy>=1.9,<2'],
         'test': [
             'catkin_pkg>=1,<2',
             'colcon-common-extensions>=0.3,<1',

@@ -13,12 +13,12 @@ from io import BytesIO
 import os
 from pathlib import Path
 
-from dynsim_ros.messages.qos import offered, Qos
 from mcap.data_stream import ReadDataStream
 from mcap.records import Attachment
 
 from .records import DamagedChunk, messages_in
 from .sources import BagError, open_sources, Source
+from ..messages.qos import offered, Qos
 
 __all__ = ['Bag', 'BagError', 'Channel', 'open_bag']
 

@@ -9,9 +9,8 @@ from collections.abc import Mapping, Sequence
 import threading
 import time
 
-from dynsim_ros.messages.qos import Qos, STATE
-
 from .writer import BagWriter
+from ..messages.qos import Qos, STATE
 
 # How often the thread looks for work, and how long a message may stay outside the file, in s.
 _PERIOD = 0.05
@@ -28,7 +27,8 @@ class Recorder:
 
     Nothing raises into the caller: when the bag cannot be written, `error` says why and what
     follows counts as lost. messages: number in the bag, the chunk in progress included; lost:
-    number handed over that are not and will not be in the bag; error: one line, or None.
+    number handed over that are not and will not be in the bag; error: one line, or None; wait:
+    as given at the start, may be changed.
     """
 
     def __init__(self, writer: BagWriter, *, capacity: int = 20_000, wait: bool = False):
@@ -41,7 +41,7 @@ class Recorder:
         self.error: str | None = None
         self._writer = writer
         self._capacity = capacity
-        self._wait = wait
+        self.wait = wait
         self._queue: deque = deque()
         self._put = self._queue.append
         self._lost = 0
@@ -110,7 +110,7 @@ class Recorder:
 
     def _make_room(self) -> bool:
         """Wait for the thread if that is wanted; tell whether there is room now."""
-        while self._wait and not self._closing and len(self._queue) >= self._capacity:
+        while self.wait and not self._closing and len(self._queue) >= self._capacity:
             self._wake.set()
             time.sleep(0.001)
         return len(self._queue) < self._capacity and not self._closing

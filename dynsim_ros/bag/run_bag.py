@@ -14,7 +14,7 @@ from .writer import BagWriter
 from .. import __version__
 from ..messages.commands import command_messages, command_topics
 from ..messages.qos import COMMAND
-from ..scene import get_value, scene_quantities, scene_to_yaml
+from ..scene import get_values, scene_to_yaml
 
 SCENE_ATTACHMENT = 'scene.yaml'
 RUN_METADATA = 'dynsim_ros'
@@ -40,7 +40,7 @@ class RunBag:
         writer.add_attachment(SCENE_ATTACHMENT, scene_to_yaml(simulator.scene).encode(),
                               'application/yaml')
         writer.add_metadata(RUN_METADATA, _run_metadata(simulator, node))
-        values = {**_scene_values(simulator.scene), **asdict(simulator.settings),
+        values = {**get_values(simulator.scene), **asdict(simulator.settings),
                   **(parameters or {})}
         writer.add_metadata(PARAMETER_METADATA,
                             {name: json.dumps(value) for name, value in values.items()})
@@ -56,16 +56,23 @@ class RunBag:
     def put(self, stamp_ns, messages):
         """Record {topic: CDR bytes} at a time [ns]."""
         ids = self._ids
-        self.recorder.put(stamp_ns, [(ids[topic], data) for topic, data in messages.items()])
+        self.recorder.put(stamp_ns, [(ids[topic], _as_sent(data))
+                                     for topic, data in messages.items()])
 
     def put_command(self, stamp_ns, command):
         """Record a command that took effect at a time [ns]."""
         messages = command_messages(command, stamp_ns)
-        self.recorder.put(stamp_ns, [(self._ids[topic], data) for topic, data in messages])
+        self.recorder.put(stamp_ns, [(self._ids[topic], _as_sent(data))
+                                     for topic, data in messages])
 
     def close(self):
         """Finish the file; harmless when repeated."""
         self.recorder.close()
+
+
+def _as_sent(data):
+    """Return CDR bytes as subscribers get them: DDS pads them to a multiple of four."""
+    return data + bytes(-len(data) % 4)
 
 
 def _resolved(topic, node):
@@ -77,10 +84,6 @@ def _run_metadata(simulator, node):
             'epoch': str(simulator.epoch), 'start_tick': str(simulator.tick),
             'start_time_ns': str(simulator.time_ns),
             'recorded_at': datetime.now(timezone.utc).isoformat(timespec='seconds')}
-
-
-def _scene_values(scene):
-    return {name: get_value(scene, name) for name in scene_quantities(scene)}
 
 
 def new_path(directory, scene_name):

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import os
 from pathlib import Path
 
-from dynsim_ros.messages.definitions import definition
-from dynsim_ros.messages.qos import Qos, STATE
 from mcap.writer import CompressionType, Writer
 
 from .output import Output
+from ..messages.definitions import definition
+from ..messages.qos import Qos, STATE
 
 COMPRESSIONS = {
     'zstd': CompressionType.ZSTD, 'lz4': CompressionType.LZ4, 'none': CompressionType.NONE}

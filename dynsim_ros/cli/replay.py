@@ -11,6 +11,7 @@ import signal
 import sys
 
 from .progress import Progress
+from .ros_arguments import split
 
 _DESCRIPTION = """\
 Publish the messages of a bag on the topics they were recorded from, with the recorded timing.
@@ -30,7 +31,7 @@ examples:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Replay a bag; return 0, also when stopped by a signal, or 2 with an error on stderr."""
-    own, ros_args = _split(sys.argv[1:] if args is None else args)
+    own, ros_args = split(sys.argv[1:] if args is None else args)
     options = _parser().parse_args(own)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
@@ -47,9 +48,9 @@ def main(args: Sequence[str] | None = None) -> int:
 def _replay(options: argparse.Namespace, ros_args: Sequence[str]) -> int:
     """Open the bag, start the node and play."""
     # Imported here so that --help needs no ROS and a signal during the import is no traceback.
-    from dynsim_ros.bag.reader import open_bag
-    from dynsim_ros.ros.replayer import Replayer, ReplayOptions
-    from dynsim_ros.ros.serving import serving
+    from ..bag.reader import open_bag
+    from ..ros.replayer import Replayer, ReplayOptions
+    from ..ros.serving import serving
 
     with open_bag(options.file) as bag:
         known_problem = bag.problem
@@ -59,7 +60,8 @@ def _replay(options: argparse.Namespace, ros_args: Sequence[str]) -> int:
             player = Replayer(node, bag, ReplayOptions(
                 rate=options.rate, loop=options.loop, start_offset=options.start_offset,
                 duration=options.duration, topics=options.topics, remap=dict(options.remap),
-                clock_hz=options.clock, start_paused=options.start_paused, wait=options.wait))
+                clock_hz=options.clock, start_paused=options.start_paused, wait=options.wait,
+                wait_acked=options.wait_acked))
             for warning in player.warnings:
                 _warn(warning)
             _play(player, bag, options.quiet)
@@ -126,21 +128,11 @@ def _parser() -> argparse.ArgumentParser:
     add('--wait', type=_not_negative, default=3.0, metavar='SECONDS',
         help='wait at most so long for each topic to have a subscriber before the first message, '
              'and 1 s once one has; not with --start-paused (default 3 s)')
+    add('--wait-acked', type=_not_negative, default=3.5, metavar='SECONDS',
+        help='wait at most so long at the end until subscribers have confirmed the last messages; '
+             'most DDS ask them every 3 s (default 3.5 s)')
     add('-q', '--quiet', action='store_true', help='print warnings and errors only')
     return parser
-
-
-def _split(args: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return our arguments and those for ROS: from --ros-args to the end or to a lone --."""
-    own, ros_args = [], []
-    target = own
-    for argument in args:
-        if argument == '--ros-args':
-            target = ros_args
-        target.append(argument)
-        if argument == '--' and target is ros_args:
-            target = own
-    return own, ros_args
 
 
 def _positive(text: str) -> float:

@@ -39,10 +39,12 @@ def _cache_directory():
                 folder.mkdir(parents=True, exist_ok=True, mode=0o700)
                 if folder.stat().st_uid != os.getuid():
                     raise PermissionError(f'{folder} belongs to another user')
-            if os.access(directory, os.W_OK):
-                if new:
-                    _forget_oldest(directory.parent)
-                return directory
+            # A folder that looks writable may be on a full disk.
+            with tempfile.TemporaryFile(dir=directory, buffering=0) as probe:
+                probe.write(bytes(4096))
+            if new:
+                _forget_oldest(directory.parent)
+            return directory
         except OSError:
             continue
     return None

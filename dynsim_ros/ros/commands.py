@@ -7,6 +7,7 @@ from rcl_interfaces.msg import Parameter as ParameterMessage
 from rclpy.parameter import Parameter
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from .context import one_line
 from .qos import profile
 from ..messages.channel import WORLD
 from ..messages.commands import anchor_topic, PARAMETER_TOPIC, push_topic
@@ -61,7 +62,10 @@ class Commands:
                                    _numbers(message.wrench.torque)))
 
     def _set(self, message):
-        parameter = Parameter.from_parameter_msg(message)
+        try:
+            parameter = Parameter.from_parameter_msg(message)
+        except (TypeError, ValueError) as error:
+            raise CommandError(f'{message.name}: {one_line(error)}') from None
         result = self._node.set_parameters_atomically([parameter])
         if not result.successful:
             raise CommandError(result.reason)

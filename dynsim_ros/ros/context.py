@@ -27,7 +27,9 @@ def ros_context(name: str, ros_args: Sequence[str]) -> Iterator[None]:
     try:
         rclpy.init(args=[name, *ros_args], signal_handler_options=SignalHandlerOptions.NO)
     except (RuntimeError, ValueError) as error:
-        raise ValueError(f'ROS cannot start: {one_line(error)}') from None
+        # rcl appends where in its own source the error arose.
+        reason = one_line(error).split(', at /')[0]
+        raise ValueError(f'ROS does not understand {" ".join(ros_args)}: {reason}') from None
     try:
         yield
     finally:

@@ -55,7 +55,9 @@ class Diagnostics:
         if simulator.failure is not None:
             level, message = _ERROR, simulator.failure
         else:
-            level, message = _OK, 'paused' if run.paused else 'running'
+            level = _OK
+            message = ('paused' if run.paused else 'waiting for /clock' if run.waiting
+                       else 'running')
         return self._status('run', level, message, {
             'simulated time [s]': f'{simulator.time:.9f}', 'tick': simulator.tick,
             'epoch': simulator.epoch, 'rate achieved [Hz]': f'{self.rate:.1f}',

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How many ticks of simulated time are due, by a clock that may be late."""
 
+from itertools import count
+import math
 import time
 
 SECOND = 1_000_000_000
@@ -9,7 +11,7 @@ SECOND = 1_000_000_000
 LONGEST_LAG = SECOND // 5
 # A timer is never asked for more calls a second than this; it then runs several ticks a call.
 SHORTEST_PERIOD = SECOND // 2000
-# With a real-time factor of 0: how long ticks may run before commands get their turn.
+# How long ticks may run before commands get their turn.
 BATCH = SECOND // 200
 
 
@@ -41,20 +43,22 @@ class Pacer:
 
     def ticks_due(self, time_ns, tick_ns):
         """
-        Yield once for each tick that is due at simulated time time_ns.
+        Yield once for each tick that is due at simulated time time_ns, for at most BATCH.
 
-        The caller advances time by tick_ns each time round.
+        The caller advances time by tick_ns each time round. What there is no time for stays due.
         """
-        if self.factor == 0.0:
-            end = time.monotonic_ns() + BATCH
-            while True:
-                yield
-                if time.monotonic_ns() >= end:
-                    return
-        for _ in range(self._count_due(time_ns, tick_ns)):
+        end = time.monotonic_ns() + BATCH
+        due, usual = self._count_due(time_ns, tick_ns)
+        for number in count() if self.factor == 0.0 else range(due):
+            self.late += number >= usual
             yield
+            if time.monotonic_ns() >= end:
+                return
 
     def _count_due(self, time_ns, tick_ns):
+        """Return how many ticks are due, and how many are when the clock is asked in time."""
+        if self.factor == 0.0:
+            return math.inf, math.inf
         elapsed = self.now() - self._clock_start
         due = int(self._time_start + elapsed * self.factor - time_ns) // tick_ns
         usual = max(round(self.period(tick_ns) * self.factor / tick_ns), 1)
@@ -63,5 +67,4 @@ class Pacer:
             self.missed += due - most
             self._time_start -= (due - most) * tick_ns
             due = most
-        self.late += max(due - usual, 0)
-        return due
+        return due, usual

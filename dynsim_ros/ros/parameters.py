@@ -7,7 +7,7 @@ from rcl_interfaces.msg import (FloatingPointRange, ParameterDescriptor, Paramet
 from rclpy.parameter import Parameter
 
 from .own_parameters import check_own, OWN
-from ..scene import (did_you_mean, get_value, load_scene, scene_quantities, SceneError,
+from ..scene import (did_you_mean, get_values, load_scene, scene_quantities, SceneError,
                      with_values)
 from ..simulation import Settings
 from ..simulation.settings import (CHOICES, setting_description, SETTING_NAMES,
@@ -31,9 +31,10 @@ class Parameters:
         given = {name: parameter.value for name, parameter
                  in node.get_parameters_by_prefix('').items()
                  if name not in _OF_RCLPY and not name.startswith(_QOS)}
-        use_sim_time = node.get_parameter('use_sim_time').value
-        if not isinstance(use_sim_time, bool):
-            raise SceneError(f'use_sim_time: {use_sim_time!r} is not true or false')
+        for name in _OF_RCLPY:
+            value = node.get_parameter_or(name, Parameter(name, value=False)).value
+            if not isinstance(value, bool):
+                raise SceneError(f'{name}: {value!r} is not true or false')
         for name in given:
             node.undeclare_parameter(name)
         self.own = {name: check_own(name, given.pop(name, own.default))
@@ -42,8 +43,7 @@ class Parameters:
         self.quantities = scene_quantities(scene)
         for name in given:
             if name not in self.known:
-                raise SceneError(f"parameter '{name}' is not known; "
-                                 + did_you_mean(name, self.known))
+                raise SceneError(self._unknown(name))
         self.scene = with_values(scene, {name: value for name, value in given.items()
                                          if name in self.quantities})
         self.settings = Settings(**{name: value for name, value in given.items()
@@ -70,6 +70,8 @@ class Parameters:
     def refusal(self, parameters, simulator):
         """Return why a group of new values cannot be set, in one line, or None; change nothing."""
         try:
+            for parameter in parameters:
+                self._check_kind(parameter)
             self._node_values(parameters)
             simulator.changed_by(self.run_values(parameters))
         except SceneError as error:
@@ -89,7 +91,7 @@ class Parameters:
         """Return Parameters that say what the simulator now has."""
         values = self._values(simulator.scene, simulator.settings)
         return [Parameter(name, value=value) for name, value in values.items()
-                if name not in OWN and self._node.get_parameter(name).value != value]
+                if name not in OWN and _plain(self._node.get_parameter(name).value) != value]
 
     def converted(self, parameter):
         """Return a parameter with an int (or ints) turned into a double where one is meant."""
@@ -100,6 +102,17 @@ class Parameters:
             if parameter.type_ == Parameter.Type.INTEGER_ARRAY:
                 return Parameter(name, value=[float(a) for a in value])
         return parameter
+
+    def _unknown(self, name):
+        return f"parameter '{name}' is not known; " + did_you_mean(name, self.known)
+
+    def _check_kind(self, parameter):
+        """Raise SceneError for a name that is not known, or a text where a number is meant."""
+        name, value = parameter.name, parameter.value
+        if not self._node.has_parameter(name):
+            raise SceneError(self._unknown(name))
+        if name in self.known and self._is_number(name) and isinstance(value, str):
+            raise SceneError(f'{name}: {value!r} is a text; give a number')
 
     def _is_number(self, name):
         if name in OWN:
@@ -112,7 +125,7 @@ class Parameters:
 
     def _values(self, scene, settings):
         return {**self.own, **{name: getattr(settings, name) for name in SETTING_NAMES},
-                **{name: get_value(scene, name) for name in self.quantities}}
+                **get_values(scene)}
 
     def _descriptor(self, name):
         if name in OWN:

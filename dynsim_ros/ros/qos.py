@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
-from dynsim_ros.messages.qos import Qos
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+from ..messages.qos import Qos
 
 
 def profile(qos: Qos) -> QoSProfile:

@@ -6,16 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from importlib import import_module
 
-from dynsim_ros.bag.reader import Channel
-from dynsim_ros.messages.definitions import definition, MessageDefinitionError
-from dynsim_ros.messages.qos import STATE
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
+from .message_types import message_class
 from .qos import profile
+from ..bag.reader import Channel
+from ..messages.definitions import definition, MessageDefinitionError
+from ..messages.qos import STATE
 
 # Length of a publisher's queue: in a burst none may push out what is not delivered yet.
 BURST = 1000
@@ -64,9 +64,8 @@ def _publisher(node: Node, channel: Channel, topic: str) -> Publisher:
 
 def _message_class(channel: Channel) -> type:
     """Return the Python class of a channel's type; raises ReplayError where there is none."""
-    package, _, name = channel.type_name.replace('/msg/', '/').partition('/')
     try:
-        found = getattr(import_module(f'{package}.msg'), name)
+        found = message_class(channel.type_name)
     except (ImportError, AttributeError, ValueError):
         raise ReplayError(f"type '{channel.type_name}' is not installed") from None
     try:

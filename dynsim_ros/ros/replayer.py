@@ -10,7 +10,6 @@ from fnmatch import fnmatchcase
 import time
 
 from builtin_interfaces.msg import Time
-from dynsim_ros.bag.reader import Bag
 from rclpy.duration import Duration
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
@@ -21,6 +20,7 @@ from std_srvs.srv import Trigger
 
 from .playback import PlaybackTime
 from .replay_topics import BURST, publishers_for, ReplayError
+from ..bag.reader import Bag
 
 # Longest wait at a stretch, and between two reports of progress, in s.
 _PATIENCE = 0.05
@@ -29,11 +29,11 @@ _REPORT_PERIOD = 0.1
 # How long to wait for further subscribers after one was found, in s.
 _SETTLING = 1.0
 
-# How long the last messages may take to reach their subscribers, in s.
-_FAREWELL = 2.0
+# How long a burst pauses at half a queue so that what was lost on the way is sent again, in s.
+_CATCHING_UP = 0.02
 
-# How long subscribers may hold a burst up, in s.
-_CATCHING_UP = 0.2
+# How long the last messages may take after a stop was asked for, in s.
+_PARTING = 0.2
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class ReplayOptions:
     beginning, in s. duration: what to play behind that, in s, None for all. topics: names or
     patterns with * and ?, empty for all. remap: new names by recorded name. clock_hz: how often
     to publish /clock, 0 for never. wait: longest wait for subscribers before the first message,
-    in s.
+    in s. wait_acked: longest wait at the end until they have confirmed the last ones, in s.
     """
 
     rate: float = 1.0
@@ -57,6 +57,7 @@ class ReplayOptions:
     clock_hz: float = 0.0
     start_paused: bool = False
     wait: float = 3.0
+    wait_acked: float = 3.5
 
 
 class Replayer:
@@ -119,7 +120,7 @@ class Replayer:
         finished = self._play(stopped)
         while finished and self._options.loop:
             finished = self._play(stopped)
-        self._await_delivery(_FAREWELL)
+        self._await_delivery(self._options.wait_acked if finished else _PARTING)
         return finished
 
     def _check(self):

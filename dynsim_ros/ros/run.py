@@ -15,17 +15,20 @@ class Run:
     """
     What the node's timer, subscriptions and services act on; all of them in one thread.
 
-    simulator; topics: Topics; options: dict of the node's own parameters, always up to date;
-    name: full name of the node; log: its logger; origin_ns: added to simulated time in stamps.
+    simulator; topics: Topics; clock: ClockPublisher; options: dict of the node's own parameters,
+    always up to date; name: full name of the node; log: its logger; origin_ns: added to
+    simulated time in stamps; waiting: True until it is known, nothing is published before.
     """
 
-    def __init__(self, simulator: Simulator, topics, options, name, log):
+    def __init__(self, simulator: Simulator, topics, clock, options, name, log):
         self.simulator = simulator
         self.topics = topics
         self.bag = None
         self.origin_ns = 0
+        self.waiting = False
         self.refused = 0
         self.paused = False
+        self._clock = clock
         self._options = options
         self._name = name
         self._log = log
@@ -54,6 +57,10 @@ class Run:
 
     def publish(self):
         """Publish and record the present instant."""
+        if self.waiting:
+            return
+        if self._options['publish_clock']:
+            self._clock.publish(self.stamp_ns)
         tick_ns = self.simulator.settings.tick_ns
         messages = self.topics.publish(self.simulator.snapshot(), self.stamp_ns, tick_ns,
                                        self.bag is not None)
@@ -61,7 +68,10 @@ class Run:
 
     def record(self, messages):
         """Record {topic: CDR bytes} at the present instant, if there is a bag."""
-        if self.bag is not None and messages:
+        if self.bag is not None and messages and not self.waiting:
+            # A run that is to be faster than time may wait for the disk, another one never.
+            factor = self._options['real_time_factor']
+            self.bag.recorder.wait = factor == 0.0 or factor > 1.0
             self.bag.put(self.stamp_ns, messages)
             self._report_bag_error()
 
@@ -93,17 +103,25 @@ class Run:
             raise SceneError(f'recording already, to {self.bag.path}')
         directory = self._options['record.directory']
         try:
-            self.bag = RunBag(
-                new_path(directory, self.simulator.scene.name), self.simulator,
-                [*self.topics.channels, DIAGNOSTICS], node=self._name,
-                compression=self._options['record.compression'], parameters=self._options,
-                wait=self._options['real_time_factor'] == 0.0)
+            self.bag = self._new_bag(directory)
         except OSError as error:
             raise SceneError(f'record.directory: {directory} cannot be written to: '
                              f'{error.strerror or error}; choose another folder') from None
         self._bag_error = None
         self._log.info(f'recording to {self.bag.path}')
         return self.bag.path
+
+    def _new_bag(self, directory):
+        """Return a new RunBag; another node may choose the same name at the same moment."""
+        while True:
+            path = new_path(directory, self.simulator.scene.name)
+            try:
+                return RunBag(
+                    path, self.simulator, [*self.topics.channels, DIAGNOSTICS], node=self._name,
+                    compression=self._options['record.compression'], parameters=self._options)
+            except FileExistsError:
+                if not path.exists():
+                    raise
 
     def stop_recording(self):
         """End the bag and return what it holds, in words; None if there was none."""

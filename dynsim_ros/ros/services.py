@@ -22,7 +22,10 @@ class Services:
                                    ('reset', Trigger, self._reset),
                                    ('record', SetBool, self._record)):
             def callback(request, response, answer=answer):
+                failure = run.simulator.failure
                 response.success, response.message = answer(request)
+                if failure is not None and failure not in response.message:
+                    response.message += f' (the run had stopped: {failure})'
                 return response
 
             node.create_service(kind, f'~/{name}', callback)

@@ -8,10 +8,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 import threading
 
-import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
+
+from .context import one_line, ros_context, spinning
 
 # How long the thread may take to see that it is to end, in s.
 _PERIOD = 0.1
@@ -25,34 +24,31 @@ def serving(name: str, ros_args: Sequence[str]) -> Iterator[Node]:
     ros_args: '--ros-args …' as on the command line. Signals are left to the caller, so that the
     node can still finish what it publishes. Raises ValueError for wrong ROS arguments.
     """
-    try:
-        rclpy.init(args=[name, *ros_args], signal_handler_options=SignalHandlerOptions.NO)
-        node = Node(name)
-    except (RuntimeError, ValueError) as error:
-        rclpy.try_shutdown()
-        # rcl appends the place in its own source to each message.
-        reason = ' '.join(str(error).split(', at /')[0].split())
-        raise ValueError(
-            f"ROS does not start with the arguments '{' '.join(ros_args)}': {reason}") from None
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
+    with ros_context(name, ros_args):
+        try:
+            node = Node(name)
+        except (RuntimeError, ValueError) as error:
+            raise ValueError(f'ROS cannot start: {one_line(error)}') from None
+        try:
+            with spinning(node) as serve, _thread(serve):
+                yield node
+        finally:
+            node.destroy_node()
+
+
+@contextmanager
+def _thread(serve) -> Iterator[None]:
+    """Serve in a thread until the block is left."""
     ended = threading.Event()
 
-    def serve():
+    def run():
         while not ended.is_set():
-            try:
-                executor.spin_once(timeout_sec=_PERIOD)
-            except ExternalShutdownException:
-                return
+            serve(_PERIOD)
 
-    thread = threading.Thread(target=serve, name='services', daemon=True)
+    thread = threading.Thread(target=run, name='services', daemon=True)
     thread.start()
     try:
-        yield node
+        yield
     finally:
         ended.set()
-        executor.wake()
         thread.join()
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.try_shutdown()

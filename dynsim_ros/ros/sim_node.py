@@ -38,13 +38,18 @@ class SimNode(Node):
     """
 
     def __init__(self, name='dynsim'):
-        super().__init__(name, automatically_declare_parameters_from_overrides=True)
+        try:
+            super().__init__(name, automatically_declare_parameters_from_overrides=True)
+        except ValueError as error:
+            # rclpy does not name the parameter; what it cannot take is an empty list.
+            raise SceneError('a parameter given at the start has no value, such as an empty '
+                             f'list: {one_line(error)}') from None
         self.parameters = Parameters(self)
         simulator = Simulator(self.parameters.scene, self.parameters.settings)
         simulator.prepare()
         try:
             topics = Topics(self, scene_channels(simulator.scene, simulator.layout))
-            self.run = Run(simulator, topics, self.parameters.own,
+            self.run = Run(simulator, topics, ClockPublisher(self), self.parameters.own,
                            self.get_fully_qualified_name(), self.get_logger())
             self.commands = Commands(self, self.run)
         except (AssertionError, RuntimeError, TypeError) as error:
@@ -57,14 +62,15 @@ class SimNode(Node):
         self.run_services = Services(self, self.run, self._resume, self._was_reset)
         self.pacer = Pacer(self.parameters.own['real_time_factor'])
         self.diagnostics = Diagnostics(self, self.run, self.pacer)
-        self._clock_publisher = ClockPublisher(self)
         self._epoch_publisher = self.create_publisher(
             message_class(_EPOCH), '~/epoch', profile(LATCHED))
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._timer = None
         self._follows_clock = False
+        self._clock_seen = 0
         self._restoring = False
         self.add_post_set_parameters_callback(self._parameters_were_set)
+        self.run.waiting = self.get_parameter('use_sim_time').value
         if self.parameters.own['record.enable']:
             self.run.start_recording()
 
@@ -115,7 +121,9 @@ class SimNode(Node):
     def _schedule(self):
         """Set the timer to the rate, and let simulated time go on from now."""
         self.pacer.factor = self.parameters.own['real_time_factor']
-        self._follows_clock = self.get_parameter('use_sim_time').value
+        follows = self.get_parameter('use_sim_time').value
+        if follows != self._follows_clock:
+            self._follows_clock, self._clock_seen = follows, 0
         self.pacer.now = self._ros_now if self._follows_clock else time.monotonic_ns
         self.pacer.restart(self.run.simulator.time_ns)
         if self._timer is not None:
@@ -134,27 +142,30 @@ class SimNode(Node):
         simulator = run.simulator
         for _ in self.pacer.ticks_due(simulator.time_ns, simulator.settings.tick_ns):
             run.tick()
-            if self.parameters.own['publish_clock']:
-                self._clock_publisher.publish(run.stamp_ns)
             if run.paused or run.finished:
                 return
 
     def _clock_is_good(self):
         """Tell whether /clock has begun; if it was set back, begin a new epoch."""
-        now = self._ros_now()
-        if now == 0:
+        last, self._clock_seen = self._clock_seen, self._ros_now()
+        if self._clock_seen == 0:
             return False
-        if self.run.origin_ns == 0 and self.run.simulator.tick == 0:
-            self._follow_from(now)
-        elif now < self.run.origin_ns:
+        if last == 0:
+            self._follow()
+        elif self._clock_seen < last:
             self.get_logger().warning('/clock was set back: reset')
             self.run.reset()
             self._was_reset()
         return True
 
-    def _follow_from(self, now):
-        self.run.origin_ns = now
-        self.pacer.restart(self.run.simulator.time_ns)
+    def _follow(self):
+        """Go on with /clock from where it is now; a run that waited for it begins there."""
+        time_ns = self.run.simulator.time_ns
+        self.pacer.restart(time_ns)
+        if self.run.waiting:
+            self.run.waiting = False
+            self.run.origin_ns = self._clock_seen - time_ns
+            self.run.publish()
 
     def _resume(self):
         self.pacer.restart(self.run.simulator.time_ns)
@@ -163,7 +174,8 @@ class SimNode(Node):
     def _was_reset(self):
         """Bring parameters and timer to the initial scene, and announce the epoch."""
         if self._follows_clock:
-            self.run.origin_ns = self._ros_now()
+            self.run.origin_ns = self._clock_seen = self._ros_now()
+            self.run.waiting = self.run.origin_ns == 0
         self._restoring = True
         try:
             for parameter in self.parameters.restore(self.run.simulator):

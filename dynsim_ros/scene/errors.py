@@ -6,8 +6,18 @@ import difflib
 import reprlib
 
 
-# What a user gave may be of any size, or contain itself (a YAML file has aliases).
-_SHOWN = reprlib.Repr()
+class _Repr(reprlib.Repr):
+    """Short text for what a user gave, of any size; it may contain itself by YAML's aliases."""
+
+    def repr_int(self, x, level):
+        """Return the number, or its size where Python refuses to write it."""
+        try:
+            return super().repr_int(x, level)
+        except ValueError:
+            return f'a number of {x.bit_length()} bits'
+
+
+_SHOWN = _Repr()
 _SHOWN.maxlevel = 3
 _SHOWN.maxdict = _SHOWN.maxlist = _SHOWN.maxtuple = _SHOWN.maxset = 9
 _SHOWN.maxstring = _SHOWN.maxother = _SHOWN.maxlong = 60
@@ -23,7 +33,8 @@ class SceneError(ValueError):
 
 def shown(value):
     """Return what was given, as short text for an error."""
-    return _SHOWN.repr(value)
+    text = _SHOWN.repr(value)
+    return text if len(text) <= 200 else text[:197] + '...'
 
 
 def did_you_mean(name, known):
@@ -34,7 +45,8 @@ def did_you_mean(name, known):
     follows a semicolon.
     """
     known = sorted(known)
-    near = difflib.get_close_matches(str(name)[:99], known, n=1, cutoff=0.5)
+    name = name[:99] if isinstance(name, str) else shown(name)
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     if near:
         return f"did you mean '{near[0]}'?"
     return 'known are: ' + ', '.join(known) if known else 'there are none'

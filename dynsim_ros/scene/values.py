@@ -16,10 +16,7 @@ from .quantity import quantities_of
 
 def scene_quantities(scene):
     """Return {name: Quantity} of every quantity that the scene has; what it lacks is absent."""
-    owners = {'': scene, **{f'{member.name}.': member for member in scene.members}}
-    if scene.air is not None:
-        owners['air.'] = scene.air
-    found = {prefix + field: quantity for prefix, owner in owners.items()
+    found = {prefix + field: quantity for prefix, owner in _owners(scene).items()
              for field, quantity in quantities_of(owner).items()}
     if scene.gravity is None:
         del found['down']
@@ -29,22 +26,24 @@ def scene_quantities(scene):
     return found
 
 
+def get_values(scene):
+    """
+    Return {name: value} of every quantity, as users write it: see get_value.
+
+    Meant for many: one get_value after another takes a time that grows as the square.
+    """
+    owners = _owners(scene)
+    return {name: _plain(owners, name, quantity)
+            for name, quantity in scene_quantities(scene).items()}
+
+
 def get_value(scene, name):
     """
     Return a quantity as users write it: a float or a list of floats, quaternions x y z w.
 
     A 3 x 3 inertia comes as a list of nine, row by row.
     """
-    quantity = _known(scene, name)
-    owner, field = _owner(scene, name)
-    value = getattr(owner, field)
-    if quantity.kind == 'orientation':
-        return list(to_ros(value))
-    if isinstance(value, float):
-        return value
-    if isinstance(value[0], tuple):
-        return [number for row in value for number in row]
-    return list(value)
+    return _plain(_owners(scene), name, _known(scene_quantities(scene), name))
 
 
 def with_values(scene, changes):
@@ -56,8 +55,9 @@ def with_values(scene, changes):
     members = {member.name: {} for member in scene.members}
     members['air'] = {}
     members[''] = {}
+    quantities = scene_quantities(scene)
     for name, value in changes.items():
-        quantity = _known(scene, name)
+        quantity = _known(quantities, name)
         owner, _, field = name.rpartition('.')
         members[owner][field] = _given(name, quantity, value)
 
@@ -82,18 +82,28 @@ def _given(name, quantity, value):
     return value
 
 
-def _known(scene, name):
-    quantities = scene_quantities(scene)
+def _known(quantities, name):
     if name not in quantities:
         raise SceneError(f"'{name}' is no quantity of this scene; "
                          + did_you_mean(name, quantities))
     return quantities[name]
 
 
-def _owner(scene, name):
-    owner, _, field = name.rpartition('.')
-    if not owner:
-        return scene, field
-    if owner == 'air':
-        return scene.air, field
-    return next(member for member in scene.members if member.name == owner), field
+def _owners(scene):
+    """Return {prefix of names: what has those quantities}."""
+    owners = {'': scene, **{f'{member.name}.': member for member in scene.members}}
+    if scene.air is not None:
+        owners['air.'] = scene.air
+    return owners
+
+
+def _plain(owners, name, quantity):
+    owner, dot, field = name.rpartition('.')
+    value = getattr(owners[owner + dot], field)
+    if quantity.kind == 'orientation':
+        return list(to_ros(value))
+    if isinstance(value, float):
+        return value
+    if isinstance(value[0], tuple):
+        return [number for row in value for number in row]
+    return list(value)

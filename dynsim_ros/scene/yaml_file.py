@@ -13,27 +13,12 @@ from .connections import Anchor, Spring
 from .errors import did_you_mean, SceneError, shown
 from .orientation import from_axis_angle, from_ros, to_ros
 from .quantity import Quantity
+from .safe_yaml import load_yaml
 from .scene import Scene
 
 SHAPES = {'particle': Particle, 'sphere': Sphere, 'box': Box, 'rigid': RigidBody}
 _AXIS = Quantity('', 'axis of rotation in world', kind='direction')
 _ANGLE = Quantity('rad', 'angle of rotation')
-
-
-class _Loader(yaml.SafeLoader):
-    """PyYAML's safe loader, which also refuses a key that stands twice."""
-
-    def compose_mapping_node(self, anchor):
-        """Return the node of a mapping; raise SceneError for a repeated key."""
-        node = super().compose_mapping_node(anchor)
-        seen = set()
-        for key, _ in node.value:
-            if isinstance(key, yaml.ScalarNode):
-                if key.value in seen:
-                    raise SceneError(f'line {key.start_mark.line + 1}: {shown(key.value)} stands '
-                                     'more than once')
-                seen.add(key.value)
-        return node
 
 
 def read_scene(path):
@@ -51,7 +36,7 @@ def read_scene(path):
 
 def parse_scene(text, name='scene'):
     """Return the Scene in a YAML text; name is used where the text gives none."""
-    data = _loaded(text)
+    data = load_yaml(text)
     known = ('name', 'description', 'gravity', 'down', 'air', 'anchors', 'bodies', 'springs')
     data = _mapping('the scene', data, known)
     for key in ('name', 'description'):
@@ -65,24 +50,6 @@ def parse_scene(text, name='scene'):
         bodies=_members('bodies', data, _body), anchors=_members('anchors', data, _anchor),
         springs=_members('springs', data, _spring),
         air=None if air is None else _build(Air, 'air', air), **settings)
-
-
-def _loaded(text):
-    """Return what a YAML text holds; raise SceneError if it is none."""
-    try:
-        return yaml.load(text, Loader=_Loader)
-    except SceneError:
-        raise
-    except RecursionError:
-        raise SceneError('is nested too deeply') from None
-    except yaml.YAMLError as error:
-        mark = getattr(error, 'problem_mark', None)
-        where = f'line {mark.line + 1}: ' if mark else ''
-        problem = getattr(error, 'problem', None) or str(error).splitlines()[0]
-        raise SceneError(f'{where}is not valid YAML: {problem}') from None
-    except Exception as error:
-        # Of a scalar that does not suit its tag, such as !!int x, PyYAML makes any error at all.
-        raise SceneError(f'is not valid YAML: {error}') from None
 
 
 def scene_to_yaml(scene):

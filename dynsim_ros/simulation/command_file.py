@@ -12,11 +12,9 @@ A command takes effect at the first tick at or after its time.
 
 from pathlib import Path
 
-import yaml
-
 from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
 from .settings import SECOND
-from ..scene import did_you_mean, Quantity, SceneError
+from ..scene import did_you_mean, load_yaml, Quantity, SceneError, shown
 
 _TIME = Quantity('s', 'time of a command', minimum=0.0, maximum=1e9)
 _FIELDS = {'anchor': ('position',), 'body': ('force', 'torque'), 'set': ()}
@@ -25,11 +23,13 @@ _FIELDS = {'anchor': ('position',), 'body': ('force', 'torque'), 'set': ()}
 def read_commands(path, scene):
     """Return [(time_ns, command)] in order of time; CommandError names the file and the entry."""
     try:
-        entries = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
+        entries = load_yaml(Path(path).read_text(encoding='utf-8'))
     except OSError as error:
         raise CommandError(f'{path}: cannot be read: {error.strerror}') from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise CommandError(f'{path}: is not valid YAML: {" ".join(str(error).split())}') from None
+    except UnicodeDecodeError:
+        raise CommandError(f'{path}: is no text file') from None
+    except SceneError as error:
+        raise CommandError(f'{path}: {error}') from None
     if not isinstance(entries, list):
         raise CommandError(f'{path}: is not a list of commands, each beginning with "- time:"')
     commands = []
@@ -43,14 +43,15 @@ def read_commands(path, scene):
 
 def _command(entry, scene):
     if not isinstance(entry, dict):
-        raise CommandError(f'{entry!r} is not a mapping such as {{time: 1, anchor: hand, ...}}')
+        raise CommandError(f'{shown(entry)} is not a mapping such as '
+                           '{time: 1, anchor: hand, position: [0, 0, 2]}')
     kind = next((kind for kind in _FIELDS if kind in entry), None)
     if kind is None or 'time' not in entry:
-        raise CommandError(f'{entry!r} has no time, or none of ' + ', '.join(_FIELDS))
+        raise CommandError(f'{shown(entry)} has no time, or none of ' + ', '.join(_FIELDS))
     known = ('time', kind, *_FIELDS[kind])
     for field in entry:
         if field not in known:
-            raise CommandError(f"there is no field '{field}'; " + did_you_mean(field, known))
+            raise CommandError(f'there is no field {shown(field)}; ' + did_you_mean(field, known))
     time_ns = round(_TIME.check('time', entry['time']) * SECOND)
     if kind == 'anchor':
         command = MoveAnchor(entry['anchor'], entry.get('position'))
@@ -60,5 +61,5 @@ def _command(entry, scene):
     elif isinstance(entry['set'], dict):
         command = SetValues(entry['set'])
     else:
-        raise CommandError(f"set: {entry['set']!r} is not a mapping of names to values")
+        raise CommandError(f'set: {shown(entry["set"])} is not a mapping of names to values')
     return time_ns, checked(command, scene)

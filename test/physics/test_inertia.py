@@ -50,7 +50,7 @@ def test_only_an_inertia_that_is_no_scalar_has_a_gyroscopic_term(body, scalar):
     model = build_model(Scene(bodies=(body,)))
     assert isinstance(body_inertia(body), float) is scalar
     assert (model.inertia is None) is scalar
-    assert (model.scalar_inertia is not None) is scalar
+    assert (model.round_inertia is not None) is scalar
 
 
 def test_given_inertia_is_kept():

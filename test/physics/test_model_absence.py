@@ -57,7 +57,7 @@ def test_air_that_only_resists_rotation_is_absent_for_particles():
 def test_only_one_kind_of_inertia(scene):
     model = build_model(load_scene(scene))
     full = scene == 'spinning_box'
-    assert (model.scalar_inertia is None) is full
+    assert (model.round_inertia is None) is full
     assert (model.inertia is None) is (model.inverse_inertia is None) is not full
 
 

@@ -1,0 +1,123 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""README.md: what it says to run, by running it; what it says of the node, by asking the node."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+
+from live_node import LiveNode
+import pytest
+from readme import blocks, column, PROGRAMS, quoted, README, table
+from ros_client import Client
+from tree import ROOT
+
+DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
+
+
+@pytest.fixture(scope='module')
+def desk(tmp_path_factory):
+    """Return a function that runs a shell command where the README's files are."""
+    folder = tmp_path_factory.mktemp('desk')
+    for _, name, text in blocks():
+        if '.' in name:
+            (folder / name).write_text(text, encoding='utf-8')
+    programs = {'python': '', **{name: f'-m dynsim_ros.cli.{name}' for name in PROGRAMS}}
+    for name in ('tools', 'bin'):
+        (folder / name).mkdir()
+    scripts = {folder / 'bin' / name: f'exec "{sys.executable}" {module} "$@"'
+               for name, module in programs.items()}
+    for path, script in {**scripts, folder / 'tools' / 'in_venv': 'exec "$@"'}.items():
+        path.write_text(f'#!/bin/sh\n{script}\n')
+        path.chmod(0o755)
+    variables = dict(os.environ, PATH=f'{folder / "bin"}{os.pathsep}{os.environ["PATH"]}')
+
+    def start(command, **options):
+        return subprocess.Popen(['sh', '-ec', command], cwd=folder, env=variables, text=True,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, **options)
+
+    return start
+
+
+def test_what_it_says_to_run_runs(desk):
+    runnable = [(language, text) for language, name, text in blocks() if name == 'run']
+    assert [language for language, _ in runnable] == ['sh', 'sh', 'python', 'python', 'sh']
+    for language, text in runnable:
+        script = text if language == 'sh' else f"python - <<'END'\n{text}END"
+        process = desk(script)
+        output, _ = process.communicate(timeout=60)
+        assert process.returncode == 0, f'{text}\n{output}'
+        assert 'error' not in output and 'warning' not in output, output
+
+
+def test_error_that_it_shows(desk):
+    shown = re.search('`(error: [^`]+)`', README).group(1)
+    process = desk('tools/in_venv simulate sphere_on_spring --set sphere.mass=-2')
+    assert process.communicate(timeout=60)[0] == f'{shown}\n'
+    assert process.returncode == 2
+
+
+@pytest.fixture(scope='module')
+def client(tmp_path_factory):
+    """Give a client of a node that publishes all that it can."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(ROOT / 'test' / 'quick_discovery.xml'))
+        node = LiveNode(tmp_path_factory.mktemp('node'), '-p', 'publish_clock:=true',
+                        '-p', 'record.enable:=true')
+        client = Client(node.name)
+        client.listen({'/diagnostics': DIAGNOSTICS})
+        yield client
+        client.close()
+        node.kill()
+
+
+def generic(names_and_types):
+    """Return a dict from names as in the README to types, of topics or services."""
+    pairs = [('/dynsim/sphere/', '~/<body>/'), ('/dynsim/hand/', '~/<anchor>/'),
+             ('/dynsim/', '~/')]
+    found = {}
+    for name, (type_name,) in names_and_types:
+        for old, new in pairs:
+            name = name.replace(old, new)
+        found[name] = f'`{type_name}`'
+    return found
+
+
+def test_topics_commands_and_services(client):
+    node = client.node
+    client.wait(lambda: '/clock' in dict(
+        node.get_publisher_names_and_types_by_node('dynsim', '/')))
+    published = generic(node.get_publisher_names_and_types_by_node('dynsim', '/'))
+    taken = generic(node.get_subscriber_names_and_types_by_node('dynsim', '/'))
+    offered = generic(node.get_service_names_and_types_by_node('dynsim', '/'))
+    for of_every_node in ('/rosout', '/parameter_events'):
+        published.pop(of_every_node, None)
+    assert column('topic') == published
+    assert column('topic', which=1) == taken
+    # the parameter services are mentioned, not listed
+    assert column('service') == {
+        name: kind for name, kind in offered.items() if 'std_srvs' in kind}
+
+
+def test_diagnostics(client):
+    status = client.next('/diagnostics')[-1].status
+    assert {part.name: [value.key for value in part.values] for part in status} == {
+        quoted(row[0])[0]: quoted(row[1]) for row in table('status in `/diagnostics`')}
+
+
+def test_listening_and_steering(client, desk):
+    listener = desk('exec tools/in_venv python -u listen.py', bufsize=1)
+    for _ in range(3):
+        assert re.fullmatch(r'\d+\.\d\d s: [+-]\d\.\d{3} [+-]\d\.\d{3} [+-]\d\.\d{3} m\n',
+                            listener.stdout.readline())
+    listener.send_signal(signal.SIGINT)
+    output, _ = listener.communicate(timeout=30)
+    assert (listener.returncode, 'Traceback' in output) == (0, False), output
+    steering = desk('tools/in_venv python steer.py')
+    output, _ = steering.communicate(timeout=60)
+    assert steering.returncode == 0, output
+    assert 'successful=True' in output and 'paused at tick' in output
+    assert client.get('spring.stiffness', 'gravity') == [200.0, 1.62]

@@ -1,0 +1,53 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The same run gives the same bits: again, in another process, after a reset, not compiled."""
+
+import json
+import sys
+
+from hash_of_runs import bits_of
+from plain import environment, in_plain_python
+import pytest
+from tree import output_of, ROOT
+
+from dynsim_ros.scene import load_scene, scene_names
+from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
+
+SCRIPT = ROOT / 'test' / 'hash_of_runs.py'
+
+
+@pytest.fixture(scope='module')
+def here():
+    return {name: bits_of(load_scene(name)) for name in scene_names()}
+
+
+def test_two_runs(here):
+    assert {name: bits_of(load_scene(name)) for name in scene_names()} == here
+
+
+def test_two_processes(here):
+    assert json.loads(output_of([sys.executable, SCRIPT], env=environment())) == here
+
+
+def test_compiled_and_as_plain_python(here):
+    assert in_plain_python(SCRIPT) == here
+
+
+def bits(run):
+    return [snapshot.state.tobytes() + snapshot.anchors.tobytes() for snapshot in run.snapshots]
+
+
+def test_reset_restores_every_bit():
+    simulator = Simulator(load_scene('sphere_on_spring'), anchor_interpolation='linear')
+    first = bits(simulator.run(0.3))
+    for command in (MoveAnchor('hand', (0.1, 0, 2)), PushBody('sphere', (0, 0, 9)),
+                    SetValues({'spring.stiffness': 200, 'sphere.mass': 2, 'rate': 50,
+                               'hand.velocity': (1, 0, 0), 'gravity': 1, 'step': 0.002,
+                               'anchor_interpolation': 'hold', 'wrench_timeout': 9})):
+        simulator.apply(command)
+        simulator.run(0.05)
+    simulator.reset()
+    assert (simulator.epoch, simulator.time_ns, simulator.tick) == (1, 0, 0)
+    assert simulator.scene == load_scene('sphere_on_spring')
+    assert simulator.settings == simulator.initial_settings
+    assert bits(simulator.run(0.3)) == first
