@@ -53,8 +53,12 @@ class LiveNode:
         """Return the paths of the bags in the default folder, oldest first."""
         return sorted(self.folder.glob('runs/*.mcap'), key=lambda path: path.stat().st_mtime_ns)
 
+    def check(self):
+        """Raise AssertionError if the process has ended with an error."""
+        assert not self.process.poll(), f'exit status {self.process.poll()}\n{self.output}'
+
     def wait(self, timeout=30.0):
-        """Wait until the node ends by itself; return its output after checking that all is well."""
+        """Wait until the node ends by itself; return its output if all is well with it."""
         status = self.process.wait(timeout)
         assert status == 0, f'exit status {status}\n{self.output}'
         assert 'Traceback' not in self.output, self.output

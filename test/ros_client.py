@@ -48,9 +48,10 @@ class Client:
     heard: {topic: list of messages as bytes}.
     """
 
-    def __init__(self, target='/dynsim'):
-        """Take part in ROS; to be closed."""
+    def __init__(self, target='/dynsim', check=lambda: None):
+        """Take part in ROS; to be closed. check: raises if it is useless to wait any longer."""
         self._target = target
+        self._check = check
         self._context = rclpy.Context()
         rclpy.init(context=self._context)
         self.node = Node('client', context=self._context, enable_rosout=False,
@@ -76,6 +77,7 @@ class Client:
         """Serve until condition() returns something true; return it."""
         limit = time.monotonic() + timeout
         while not (result := condition()):
+            self._check()
             assert time.monotonic() < limit, f'waited {timeout} s in vain'
             self._executor.spin_once(timeout_sec=0.02)
         return result
@@ -87,7 +89,7 @@ class Client:
         while quiet < 3:
             assert time.monotonic() < limit, 'messages arrive without end'
             before = sum(map(len, self.heard.values()))
-            self._executor.spin_once(timeout_sec=0.05)
+            self._executor.spin_once(timeout_sec=0.03)
             quiet = quiet + 1 if before == sum(map(len, self.heard.values())) else 0
 
     def listen(self, topics, qos=DEEP):
@@ -110,7 +112,7 @@ class Client:
         """Return the message that was heard last on a topic."""
         return deserialize_message(self.heard[topic][-1], self._types[topic])
 
-    def next(self, topic, count=1):
+    def more(self, topic, count=1):
         """Wait for so many more messages of a topic; return all those that came."""
         before = len(self.heard[topic])
         self.wait(lambda: len(self.heard[topic]) >= before + count)
@@ -170,7 +172,7 @@ class Client:
         self.drain()
         return self.messages(topic)[before:]
 
-    def set(self, values):
+    def configure(self, values):
         """Set parameters one by one; return [SetParametersResult]."""
         return self.call('set_parameters', SetParameters, parameters=_messages(values)).results
 

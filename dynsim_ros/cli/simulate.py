@@ -16,8 +16,9 @@ from .progress import Progress
 _DESCRIPTION = """\
 Simulate a scene into a bag, without any ROS process and as fast as the machine can.
 
-The bag is the same that the live node records: same topics, same bytes. SCENE is the name of a
-scene that comes with the package, or the path of a YAML file."""
+The bag is the same that the live node records: same topics, same bytes (but for /diagnostics,
+which tells about a live process). SCENE is the name of a scene that comes with the package, or
+the path of a YAML file."""
 
 _EPILOG = """
 settings and quantities for --set, with their defaults:
@@ -74,34 +75,33 @@ def _simulate(options) -> int:
     simulator.prepare()
     channels = scene_channels(simulator.scene, simulator.layout)
     bag = RunBag(path, simulator, channels, compression=options.compression, wait=True)
-    started = time.monotonic()
     run = OfflineRun(simulator, commands, _Sink(bag, channels, progress))
+    started = time.monotonic()
     try:
-        status = _run(run, options.duration)
+        status, error = _run(run, options.duration)
     finally:
         bag.close()
         progress.clear()
     elapsed = time.monotonic() - started
     progress.say(f'{simulator.time:g} s simulated in {elapsed:.2f} s '
-                 f'({simulator.time / elapsed:.0f} times real time); '
+                 f'({simulator.time / elapsed:.3g} times real time); '
                  f'{bag.recorder.messages} messages in {bag.path}')
-    if bag.recorder.error:
-        print(f'error: {bag.recorder.error}', file=sys.stderr)
-        return 2
-    return status
+    if error or bag.recorder.error:
+        print(f'error: {error or bag.recorder.error}', file=sys.stderr)
+    return 2 if bag.recorder.error else status
 
 
-def _run(run, duration) -> int:
+def _run(run, duration):
+    """Run to the end; return the exit status and, where it went wrong, an error."""
     from ..simulation import DivergenceError
 
     try:
         run.run(duration)
     except DivergenceError as error:
-        print(f'error: {error}', file=sys.stderr)
-        return 1
+        return 1, str(error)
     except KeyboardInterrupt:
-        return 130
-    return 0
+        return 130, None
+    return 0, None
 
 
 class _Sink:

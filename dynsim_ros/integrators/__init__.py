@@ -14,8 +14,13 @@ class Method:
     """
     An integration method.
 
-    order: of convergence; advance(model, anchors, pushes, t_ns, h_ns, steps, y, work): takes
-    steps of one length, see any of the files.
+    order: of convergence;
+    advance(model, anchors, pushes, t_ns, h_ns, steps, y, scratch): takes steps of length h_ns,
+    beginning at time t_ns, both integers [ns], so that the times of the steps do not depend on
+    how many of them are taken at once. model: Model; anchors: (n, 6) position [m] and velocity
+    [m/s] in world at time 0; pushes: forces [N] and torques [N m] laid out as the state; y:
+    state, replaced; scratch: (SCRATCH_ROWS, state_size), overwritten. Returns the sum over the
+    steps of what normalising the quaternions removed.
     """
 
     name: str
@@ -35,7 +40,7 @@ METHODS = {method.name: method for method in (
 )}
 DEFAULT_METHOD = 'rk4'
 # Rows of scratch memory that a method may use, each as long as the state.
-WORK_ROWS = 5
+SCRATCH_ROWS = 5
 
 
 def method_named(name):

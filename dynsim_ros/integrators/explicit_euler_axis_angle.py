@@ -20,24 +20,19 @@ def turn(bodies, rigid, h, y):
     for i in range(rigid):
         j = quaternion_at(bodies) + 4 * i
         omega = at(y, omega_at(bodies, rigid) + 3 * i)
-        rotation = matrix_product(axis_angle_matrix(scale(h, omega)),
-                                  rotation_matrix(quaternion(y, j)))
-        put_quaternion(y, j, matrix_quaternion(rotation))
+        q = quaternion(y, j)
+        rotation = matrix_product(axis_angle_matrix(scale(h, omega)), rotation_matrix(q))
+        w, x, y_, z = matrix_quaternion(rotation)
+        # q and -q are one orientation: stay with the nearer one, so that no plot of q jumps.
+        sign = -1.0 if q[0] * w + q[1] * x + q[2] * y_ + q[3] * z < 0.0 else 1.0
+        put_quaternion(y, j, (sign * w, sign * x, sign * y_, sign * z))
 
 
 @kernel
-def advance(model, anchors, pushes, t_ns, h_ns, steps, y, work):
-    """
-    Take a number of steps of length h_ns, beginning at time t_ns.
-
-    model: Model; anchors: (n, 6) position [m] and velocity [m/s] in world at time 0; pushes:
-    forces [N] and torques [N m] laid out as the state; t_ns, h_ns: integers [ns], so that the
-    times of the steps do not depend on how many of them are taken at once; y: state, replaced;
-    work: (5, state_size), overwritten.
-    Returns the sum over the steps of what normalising the quaternions removed.
-    """
+def advance(model, anchors, pushes, t_ns, h_ns, steps, y, scratch):
+    """Take a number of steps of one length; see Method for the arguments."""
     bodies = model.mass.shape[0]
-    a = work[0]
+    a = scratch[0]
     h = h_ns * 1e-9
     removed = 0.0
     for k in range(steps):

@@ -15,17 +15,10 @@ def add_scaled(y, s, k, out):
 
 
 @kernel
-def advance(model, anchors, pushes, t_ns, h_ns, steps, y, work):
-    """
-    Take a number of steps of length h_ns, beginning at time t_ns.
-
-    model: Model; anchors: (n, 6) position [m] and velocity [m/s] in world at time 0; pushes:
-    forces [N] and torques [N m] laid out as the state; t_ns, h_ns: integers [ns], so that the
-    times of the steps do not depend on how many of them are taken at once; y: state, replaced;
-    work: (5, state_size), overwritten.
-    Returns the sum over the steps of what normalising the quaternions removed.
-    """
-    k1, k2, k3, k4, stage = work[0], work[1], work[2], work[3], work[4]
+def advance(model, anchors, pushes, t_ns, h_ns, steps, y, scratch):
+    """Take a number of steps of one length; see Method for the arguments."""
+    k1, k2, k3, k4 = scratch[0], scratch[1], scratch[2], scratch[3]
+    stage = scratch[4]
     h = h_ns * 1e-9
     removed = 0.0
     for k in range(steps):

@@ -25,19 +25,11 @@ def turn(bodies, rigid, h, y):
 
 
 @kernel
-def advance(model, anchors, pushes, t_ns, h_ns, steps, y, work):
-    """
-    Take a number of steps of length h_ns, beginning at time t_ns.
-
-    model: Model; anchors: (n, 6) position [m] and velocity [m/s] in world at time 0; pushes:
-    forces [N] and torques [N m] laid out as the state; t_ns, h_ns: integers [ns], so that the
-    times of the steps do not depend on how many of them are taken at once; y: state, replaced;
-    work: (5, state_size), overwritten.
-    Returns the sum over the steps of what normalising the quaternions removed.
-    """
+def advance(model, anchors, pushes, t_ns, h_ns, steps, y, scratch):
+    """Take a number of steps of one length; see Method for the arguments."""
     bodies = model.mass.shape[0]
     rigid = model.rigid
-    a = work[0]
+    a = scratch[0]
     h = h_ns * 1e-9
     removed = 0.0
     for k in range(steps):

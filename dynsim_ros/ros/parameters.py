@@ -7,7 +7,7 @@ from rcl_interfaces.msg import (FloatingPointRange, ParameterDescriptor, Paramet
 from rclpy.parameter import Parameter
 
 from .own_parameters import check_own, OWN
-from ..scene import (did_you_mean, get_values, load_scene, scene_quantities, SceneError,
+from ..scene import (did_you_mean, get_value, get_values, load_scene, scene_quantities, SceneError,
                      with_values)
 from ..simulation import Settings
 from ..simulation.settings import (CHOICES, setting_description, SETTING_NAMES,
@@ -103,6 +103,12 @@ class Parameters:
                 return Parameter(name, value=[float(a) for a in value])
         return parameter
 
+    def canonical(self, parameters, simulator):
+        """Return parameters that can be set with their values as they will be in force."""
+        scene, _ = simulator.changed_by(self.run_values(parameters))
+        return [Parameter(parameter.name, value=get_value(scene, parameter.name))
+                if parameter.name in self.quantities else parameter for parameter in parameters]
+
     def _unknown(self, name):
         return f"parameter '{name}' is not known; " + did_you_mean(name, self.known)
 
@@ -150,7 +156,7 @@ def _described(description, quantity=None, read_only=False):
     elif quantity is not None and quantity.kind != 'inertia':
         descriptor.additional_constraints = (
             f'{4 if quantity.kind == "orientation" else 3} numbers, each '
-            f'{quantity.minimum:g} to {quantity.with_unit(quantity.maximum)}')
+            f'{quantity.bounds}')
     return descriptor
 
 

@@ -51,7 +51,7 @@ class Run:
             self.simulator.advance_tick()
         except DivergenceError as error:
             self.paused = True
-            self._log.error(f'paused: {error}')
+            self._log.error(f'paused: {error}; then call ~/reset')
             return
         self.publish()
 

@@ -34,9 +34,12 @@ class Services:
         simulator = self._run.simulator
         return f'tick {simulator.tick}, {simulator.time:.9g} s'
 
+    def _failure(self):
+        return f'{self._run.simulator.failure}; then call ~/reset'
+
     def _pause(self, request):
         if not request.data and self._run.simulator.failure is not None:
-            return False, self._run.simulator.failure
+            return False, self._failure()
         self._run.paused = request.data
         if not request.data:
             self._resumed()
@@ -48,7 +51,7 @@ class Services:
         if self._run.simulator.failure is None:
             self._run.tick()
         if self._run.simulator.failure is not None:
-            return False, self._run.simulator.failure
+            return False, self._failure()
         return True, self._now()
 
     def _reset(self, _):

@@ -99,9 +99,12 @@ class SimNode(Node):
                     values.get('publish_clock', self.parameters.own['publish_clock']))
             except SceneError as error:
                 reason = str(error)
-        if reason is not None and not self._restoring:
+        if self._restoring:
+            return super().set_parameters_atomically(parameters)
+        if reason is not None:
             return refused(reason)
-        return super().set_parameters_atomically(parameters)
+        return super().set_parameters_atomically(
+            self.parameters.canonical(parameters, self.run.simulator))
 
     @staticmethod
     def _check_clock(follows, publishes):

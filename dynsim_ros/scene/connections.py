@@ -18,7 +18,8 @@ class Anchor:
     """
 
     name: str
-    position: tuple = quantity('m', 'position in world', kind='vector', minimum=-1e6, maximum=1e6)
+    position: tuple = quantity('m', 'position in world, until commanded', kind='vector',
+                               minimum=-1e6, maximum=1e6)
     velocity: tuple = quantity('m/s', 'constant velocity in world', kind='vector', minimum=-1e6,
                                maximum=1e6, default=(0.0, 0.0, 0.0))
 

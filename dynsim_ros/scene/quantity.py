@@ -41,6 +41,12 @@ class Quantity:
         text = f'{value:.9g}' if isinstance(value, float) else str(value)
         return f'{text} {self.unit}' if self.unit else text
 
+    @property
+    def bounds(self):
+        """Return the bounds as text with the unit."""
+        unit = f' {self.unit}' if self.unit else ''
+        return f'{self.minimum:g} to {self.maximum:g}{unit}'
+
     def check(self, name, value):
         """
         Return the value in its canonical form: a float, or a tuple of floats.
@@ -84,7 +90,7 @@ class Quantity:
                              + (f' in {self.unit}' if self.unit else ''))
         if not self.minimum <= number <= self.maximum:
             raise SceneError(f'{name}: {self.with_unit(number)} is out of range: '
-                             f'{self.minimum:g} to {self.with_unit(self.maximum)}')
+                             f'{self.bounds}')
         return number
 
     def _numbers(self, name, value, count):

@@ -16,7 +16,7 @@ class Scene:
     """
     Bodies, anchors and springs in a gravity field and in air; any number of each.
 
-    bodies, anchors, springs: tuples, each member with a name that no other member has;
+    bodies, anchors, springs: sequences, kept as tuples; no two members have the same name;
     gravity: None for no gravity; down: (3,) unit vector in world; air: None for no air.
     Raises SceneError if a name or a reference is wrong.
     """
@@ -34,6 +34,8 @@ class Scene:
 
     def __post_init__(self):
         check_quantities(self, '')
+        for section in ('bodies', 'anchors', 'springs'):
+            object.__setattr__(self, section, tuple(getattr(self, section)))
         if not self.bodies:
             raise SceneError('bodies: there are none; give at least one')
         names = [member.name for member in self.members]

@@ -12,7 +12,7 @@ from .layout import Layout
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
 from .trajectory import Trajectory
-from ..integrators import method_named, WORK_ROWS
+from ..integrators import method_named, SCRATCH_ROWS
 from ..physics.energies import energies
 from ..physics.model import build_model
 from ..physics.state import initial_state, WORKS
@@ -55,7 +55,7 @@ class Simulator:
         self.normalisation_removed = 0.0
         self._build()
         self.layout = Layout(self.scene)
-        self._work = np.empty((WORK_ROWS, self.layout.size))
+        self._scratch = np.empty((SCRATCH_ROWS, self.layout.size))
         self._state = initial_state(self.scene, self._model)
         self._pushes = np.zeros_like(self._state)
         self._push_ends = {}
@@ -170,7 +170,7 @@ class Simulator:
     def _integrated(self, state, start_ns, steps, step):
         state = state.copy()
         removed = self._advance(self._model, self._anchors.motion, self._pushes,
-                                start_ns - self._anchors.since, step, steps, state, self._work)
+                                start_ns - self._anchors.since, step, steps, state, self._scratch)
         return state, removed
 
     def _describe_failure(self, state, end):
@@ -181,7 +181,7 @@ class Simulator:
         return (f"the motion of '{where}' is no longer finite between {self.time:.9g} s and "
                 f'{end / SECOND:.9g} s of simulated time; the state of {self.time:.9g} s is kept; '
                 f'give a shorter step than {self.settings.step:g} s or smaller stiffness, damping '
-                'or drag, then reset')
+                'or drag')
 
     def _begin_here(self):
         """Let a step end at the present instant: what follows is under something new."""

@@ -19,7 +19,7 @@ DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
 
 @pytest.fixture(scope='module')
 def desk(tmp_path_factory):
-    """Return a function that runs a shell command where the README's files are."""
+    """Give a function that starts a shell command in a folder with the files of README.md."""
     folder = tmp_path_factory.mktemp('desk')
     for _, name, text in blocks():
         if '.' in name:
@@ -34,12 +34,19 @@ def desk(tmp_path_factory):
         path.chmod(0o755)
     variables = dict(os.environ, PATH=f'{folder / "bin"}{os.pathsep}{os.environ["PATH"]}')
 
-    def start(command, **options):
-        return subprocess.Popen(['sh', '-ec', command], cwd=folder, env=variables, text=True,
-                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                stderr=subprocess.STDOUT, **options)
+    started = []
 
-    return start
+    def start(command, **options):
+        started.append(subprocess.Popen(
+            ['sh', '-ec', command], cwd=folder, env=variables, text=True, start_new_session=True,
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options))
+        return started[-1]
+
+    yield start
+    for process in started:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
 
 
 def test_what_it_says_to_run_runs(desk):
@@ -117,7 +124,7 @@ def test_listening_and_steering(client, desk):
     output, _ = listener.communicate(timeout=30)
     assert (listener.returncode, 'Traceback' in output) == (0, False), output
     steering = desk('tools/in_venv python steer.py')
-    output, _ = steering.communicate(timeout=60)
+    output, _ = steering.communicate(timeout=30)
     assert steering.returncode == 0, output
     assert 'successful=True' in output and 'paused at tick' in output
     assert client.get('spring.stiffness', 'gravity') == [200.0, 1.62]

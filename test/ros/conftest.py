@@ -40,7 +40,7 @@ def connect(discovery):
     made = []
 
     def connect(node):
-        client = Client(node.name)
+        client = Client(node.name, node.check)
         made.append(client)
         return client
 

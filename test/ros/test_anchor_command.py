@@ -17,7 +17,7 @@ def node(start):
 def client(node, connect):
     client = connect(node)
     client.listen(SPHERE)
-    client.next('sphere/pose')
+    client.more('sphere/pose')
     client.pause()
     return client
 
@@ -55,7 +55,7 @@ def test_the_last_of_several_counts(client):
 
 
 def test_linear(client):
-    assert client.set({'anchor_interpolation': 'linear'})[0].successful
+    assert client.configure({'anchor_interpolation': 'linear'})[0].successful
     move(client, 0.2, 0.0, 2.0)
     xs = hand(client, 15)[:, 0]
     # with no command before it the move takes 0.1 s
@@ -64,7 +64,7 @@ def test_linear(client):
 
 
 def test_a_stream_is_followed_evenly(client):
-    assert client.set({'anchor_interpolation': 'linear'})[0].successful
+    assert client.configure({'anchor_interpolation': 'linear'})[0].successful
     seen = []
     for number in range(1, 16):
         move(client, 0.01 * number, 0.0, 2.0)
@@ -74,7 +74,7 @@ def test_a_stream_is_followed_evenly(client):
 
 
 def test_the_speed_of_the_anchor_is_felt_by_the_damper(client):
-    assert client.set({'anchor_interpolation': 'linear'})[0].successful
+    assert client.configure({'anchor_interpolation': 'linear'})[0].successful
     client.steps(1, 'sphere/pose')
     still = forces(client.messages('sphere/wrench/damper'))[-1]
     pose, twist = client.last('sphere/pose'), client.last('sphere/twist')
@@ -93,12 +93,12 @@ def test_the_body_follows(client):
     assert client.set_group({'spring.damping': 5.0, 'air.linear_drag': 4.0,
                              'air.rotational_drag': 0.05}).successful
     move(client, 1.0, -0.5, 3.0)
-    client.set({'real_time_factor': 0.0})
+    client.configure({'real_time_factor': 0.0})
     client.pause(False)
     client.wait(lambda: client.heard['sphere/pose']
                 and client.last('sphere/pose').header.stamp.sec >= 20)
     client.pause()
-    client.set({'real_time_factor': 1.0})
+    client.configure({'real_time_factor': 1.0})
     client.drain()
     x, y, z = xyz(client.last('sphere/pose').pose.position)
     # at rest it hangs below the hand: 0.5 m of spring, 9.81 N / 100 N/m more, and its radius

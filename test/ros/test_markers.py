@@ -15,7 +15,7 @@ def drawn(start, connect):
     """Give ({namespace: markers}, pose of the sphere, pose of the hand) of one instant."""
     client = connect(start())
     client.listen({'markers': MARKERS, 'sphere/pose': POSE, 'hand/pose': POSE})
-    client.next('markers', 2)
+    client.more('markers', 2)
     client.pause()
     client.drain()
     array = client.last('markers')

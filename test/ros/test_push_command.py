@@ -14,7 +14,7 @@ TICK = 0.01
 def client(start, connect):
     client = connect(start('-p', 'scene:=spinning_box'))
     client.listen(BOX)
-    client.next('box/pose')
+    client.more('box/pose')
     client.pause()
     return client
 
@@ -42,7 +42,7 @@ def net(client, ticks):
 
 
 def test_momentum_is_force_times_time(client):
-    client.set({'wrench_timeout': 0.25})
+    client.configure({'wrench_timeout': 0.25})
     push(client, 'box', (2.0, 0.0, -4.0))
     client.steps(40, 'box/twist')
     np.testing.assert_allclose(velocities([client.last('box/twist')]),
@@ -50,7 +50,7 @@ def test_momentum_is_force_times_time(client):
 
 
 def test_ends_when_it_times_out(client):
-    client.set({'wrench_timeout': 0.03})
+    client.configure({'wrench_timeout': 0.03})
     push(client, 'box', (2.0, 0.0, 0.0))
     assert net(client, 5) == [2.0, 2.0, 0.0, 0.0, 0.0]
 
@@ -70,7 +70,7 @@ def test_is_replaced_and_taken_back(client):
 
 
 def test_lasts_until_replaced_without_time_out(client):
-    client.set({'wrench_timeout': 0.0})
+    client.configure({'wrench_timeout': 0.0})
     push(client, 'box', (1.0, 0.0, 0.0))
     assert net(client, 60) == [1.0] * 60
 
@@ -93,7 +93,7 @@ def test_a_particle_takes_no_torque(start, connect):
     node = start('-p', 'scene:=particle_on_spring', '-r', '__ns:=/other', name='/other/dynsim')
     client = connect(node)
     client.listen({**PARTICLE, '/diagnostics': DIAGNOSTICS})
-    client.next('particle/pose')
+    client.more('particle/pose')
     client.pause()
     client.clear()
     push(client, 'particle', (3.0, 0.0, 0.0))

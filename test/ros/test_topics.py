@@ -35,7 +35,7 @@ def node(start):
 def client(node, connect):
     client = connect(node)
     client.listen({**SPHERE, '/diagnostics': DIAGNOSTICS})
-    client.next('sphere/pose', 60)
+    client.more('sphere/pose', 60)
     client.wait(lambda: client.heard['/diagnostics'])
     client.pause()
     client.drain()
@@ -157,7 +157,7 @@ def test_only_what_a_scene_has(others, client, scene):
 def test_a_particle_knows_no_torque(others, connect):
     client = connect(others['particle_on_spring'])
     client.listen(PARTICLE)
-    client.next('particle/wrench/net', 20)
+    client.more('particle/wrench/net', 20)
     client.pause()
     client.drain()
     for kind in ('spring', 'gravity', 'net'):

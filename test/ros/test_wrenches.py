@@ -31,7 +31,7 @@ def heard(start, connect):
     """Give {topic: messages} of 60 ticks one behind the other."""
     client = connect(start())
     client.listen(SPHERE)
-    client.next('sphere/pose')
+    client.more('sphere/pose')
     client.pause()
     client.drain()
     client.clear()

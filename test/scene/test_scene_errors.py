@@ -31,7 +31,7 @@ WRONG = [
      "'linear_drag'?"),
     ('linear_drag: 0.1', 'linear_drag:', 'air.linear_drag: is missing; give it in N s/m'),
     ('{linear_drag: 0.1}', '5', 'air: 5 is not a mapping of names to values'),
-    ('mass: 1,', 'mass: 0,', 'ball.mass: 0 kg is out of range: 1e-09 to 1000000 kg'),
+    ('mass: 1,', 'mass: 0,', 'ball.mass: 0 kg is out of range: 1e-09 to 1e+06 kg'),
     ('mass: 1,', '', 'ball.mass: is missing; give it in kg'),
     ('mass: 1,', 'mas: 1,', "ball: there is no field 'mas'; did you mean 'mass'?"),
     ('radius: 0.1', 'radius: 1e5', 'ball.radius: 100000 m is out of range: 1e-09 to 10000 m'),

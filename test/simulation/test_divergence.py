@@ -25,7 +25,7 @@ def test_nothing_that_is_seen_before_is_not_finite(method):
     simulator, snapshots, _ = diverged(integrator=method)
     assert simulator.snapshot().time_ns == snapshots[-1].time_ns
     assert simulator.snapshot().state.tobytes() == snapshots[-1].state.tobytes()
-    with np.errstate(all='raise'):
+    with np.errstate(over='raise', invalid='raise'):
         for snapshot in snapshots:
             assert np.isfinite(snapshot.state).all()
             assert np.isfinite(snapshot.net_forces).all()

@@ -1,0 +1,152 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""Recording as it is asked for, by parameter and by service; and when the disk does not play."""
+
+import resource
+
+from dynsim_ros.bag.reader import open_bag
+from mcap.reader import make_reader
+import pytest
+from scene_topics import DIAGNOSTICS, POSE
+
+
+@pytest.fixture(scope='module')
+def node(start):
+    return start('-p', 'record.enable:=true')
+
+
+@pytest.fixture(scope='module')
+def client(node, connect):
+    client = connect(node)
+    client.listen({'sphere/pose': POSE, '/diagnostics': DIAGNOSTICS})
+    client.next('sphere/pose', 5)
+    return client
+
+
+@pytest.fixture(autouse=True)
+def recording(client):
+    client.pause(False)
+    client.record(True)
+
+
+def summary(path):
+    """Return the summary of a bag, which only a finished one has."""
+    with open(path, 'rb') as stream:
+        found = make_reader(stream).get_summary()
+    assert found is not None
+    return found
+
+
+def last_told(client):
+    """Return the recorder's status in the next diagnostics."""
+    (array, *_) = client.next('/diagnostics')
+    return array.status[2]
+
+
+def test_stop_and_start_name_the_file(node, client):
+    response = client.record(False)
+    assert response.success
+    count, name = response.message.split(' messages in ')
+    assert summary(node.folder / name).statistics.message_count == int(count) > 0
+    started = client.record(True)
+    assert started.success
+    assert started.message != name and (node.folder / started.message).is_file()
+
+
+def test_twice_is_refused_and_changes_nothing(node, client):
+    again = client.record(True)
+    assert not again.success
+    name = again.message.removeprefix('recording already, to ')
+    assert client.record(False).message.endswith(f' messages in {name}')
+    nothing = client.record(False)
+    assert (nothing.success, nothing.message) == (False, 'not recording')
+
+
+def test_reset_begins_a_new_file(node, client):
+    before = set(node.bags)
+    client.next('sphere/pose', 3)
+    client.reset()
+    client.next('sphere/pose', 3)
+    client.pause()
+    client.reset()
+    stopped = client.record(False).message
+    first, second = sorted(set(node.bags) - before, key=lambda path: path.stat().st_mtime_ns)
+    assert stopped.endswith(str(second.relative_to(node.folder)))
+    for path in (first, second):
+        statistics = summary(path).statistics
+        assert statistics.message_start_time == 0
+        with open(path, 'rb') as stream:
+            (record,) = [record.metadata for record in make_reader(stream).iter_metadata()
+                         if record.name == 'dynsim_ros']
+        assert record['start_tick'] == '0'
+    # the second was reset while paused: it holds the initial state alone
+    assert summary(second).statistics.message_end_time == 0
+
+
+def test_directory_can_change_and_has_to_be_writable(node, client):
+    client.record(False)
+    (node.folder / 'file').write_text('no folder')
+    for directory, reason in (('file', 'File exists'), ('file/below', 'Not a directory'),
+                              ('/proc/nowhere', 'No such file or directory')):
+        assert client.set({'record.directory': directory})[0].successful
+        response = client.record(True)
+        assert not response.success
+        assert response.message == (f'record.directory: {directory} cannot be written to: '
+                                    f'{reason}; choose another folder')
+    assert client.set_group({'record.directory': 'other/place',
+                             'record.compression': 'lz4'}).successful
+    assert client.record(True).message.startswith('other/place/sphere_on_spring_')
+    client.next('sphere/pose', 20)
+    path = node.folder / client.record(False).message.split(' in ')[1]
+    assert {index.compression for index in summary(path).chunk_indexes} == {'lz4'}
+    client.set_group({'record.directory': 'runs', 'record.compression': 'zstd'})
+
+
+def test_a_reset_that_cannot_record_says_so_and_goes_on(node, client):
+    client.set({'record.directory': '/proc/nowhere'})
+    before = len(node.output)
+    assert client.reset().success
+    client.next('sphere/pose', 3)
+    assert '[ERROR]' in node.output[before:]
+    assert 'record.directory: /proc/nowhere cannot be written to' in node.output[before:]
+    assert last_told(client).message == 'not recording'
+    client.set({'record.directory': 'runs'})
+
+
+def test_full_disk(node, client):
+    path = node.folder / client.record(True).message.removeprefix('recording already, to ')
+    # a file size limit is as good as a full disk; shared memory of DDS is there already
+    size = max(path.stat().st_size, 1) + 150_000
+    limits = resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, (
+        size, resource.RLIM_INFINITY))
+    client.set({'rate': 1000.0})
+    before = len(node.output)
+    client.wait(lambda: 'recorder: ' in node.output[before:])
+    assert 'cannot be written: File too large' in node.output[before:]
+    status = client.wait(lambda: (found := last_told(client)).level == b'\x02' and found)
+    assert 'cannot be written: File too large' in status.message
+    lost = int({item.key: item.value for item in status.values}['lost'])
+    assert lost > 0
+    client.next('sphere/pose', 20)
+    resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, limits)
+    stopped = client.record(False)
+    assert stopped.success and ' lost: ' in stopped.message
+    # what it holds comes out with a reader that does not need an end
+    with open_bag(path) as bag:
+        assert bag.problem and 0 < sum(1 for _ in bag.messages()) < lost + 10_000
+    path.unlink()
+    assert node.output.count('recorder: ') == 1
+    # and the next one is a good one again
+    assert client.record(True).success
+    client.next('sphere/pose', 20)
+    again = client.record(False).message
+    assert 'lost' not in again
+    assert summary(node.folder / again.split(' in ')[1]).statistics.message_count > 100
+    client.set({'rate': 100.0})
+
+
+def test_all_is_finished_in_the_end(node, client):
+    client.next('sphere/pose', 3)
+    assert node.stop().count('[INFO]') > 2
+    for path in node.bags:
+        assert summary(path).statistics.message_count > 0
