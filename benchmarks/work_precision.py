@@ -157,8 +157,8 @@ def table(all_results):
     """Return the Markdown text."""
     levels = (1e-2, 1e-3, 1e-6, 1e-9)
     lines = ['# Run time against error', '',
-             'Made by `python benchmarks/work_precision.py` (what is measured stands at the top of '
-             'that file).', 'Milliseconds for 10 s of simulated time, the cheapest setting that '
+             'Made by `make bench` (what is measured stands at the top of work_precision.py).',
+             'Milliseconds for 10 s of simulated time, the cheapest setting that '
              'reaches the error; the ratio to scipy in brackets.', '']
     for scene, (results, doubt) in all_results.items():
         lines += [f'## {scene}', '', f'Reference known to {doubt:.1g}.', '',

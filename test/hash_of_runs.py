@@ -5,10 +5,9 @@
 import hashlib
 import json
 
-import numpy as np
-
 from dynsim_ros.scene import load_scene, scene_names
 from dynsim_ros.simulation import MoveAnchor, PushBody, Simulator
+import numpy as np
 
 
 def bits_of(scene):

@@ -8,11 +8,10 @@ momentum in world as variables; nothing of the package but the scene's data is u
 scipy's DOP853.
 """
 
+from dynsim_ros.scene import Box, Rigid, RigidBody, Sphere
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.scene import Box, Rigid, RigidBody, Sphere
 
 
 def inertia_matrix(body):

@@ -147,8 +147,14 @@ class Client:
         return future.result()
 
     def pause(self, data=True):
-        """Call ~/pause; return the response."""
-        return self.call('pause', SetBool, data=data)
+        """Call ~/pause and wait for what was published before; return the response."""
+        response = self.call('pause', SetBool, data=data)
+        if data and response.success:
+            time_ns = float(response.message.split()[4]) * 1e9
+            for topic, heard in self.heard.items():
+                if topic.endswith('/pose') and heard:
+                    self.wait(lambda topic=topic: stamps([self.last(topic)])[0] > time_ns - 5e4)
+        return response
 
     def record(self, data):
         """Call ~/record; return the response."""

@@ -8,14 +8,13 @@ The slope of log(error) over log(step), error against DOP853 (rtol 1e-13) on new
 
 import functools
 
+from dynsim_ros.integrators import METHODS
+from dynsim_ros.scene import load_scene, with_values
+from dynsim_ros.simulation import Simulator
 from newton_euler import NewtonEuler, rotation_distance
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.integrators import METHODS
-from dynsim_ros.scene import load_scene, with_values
-from dynsim_ros.simulation import Simulator
 
 # Few steps for the method of order 4: with many, rounding is all that is left.
 STEPS = {'rk4': (4e-3, 2e-3, 1e-3)}

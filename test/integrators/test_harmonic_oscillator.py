@@ -7,11 +7,10 @@ A sphere, held at its centre by a spring of natural length 0, without gravity, d
 z'' = -omega^2 z. Each method multiplies (z, z' / omega) by a known matrix.
 """
 
-import numpy as np
-import pytest
-
 from dynsim_ros.scene import load_scene, parse_scene, scene_to_yaml, with_values
 from dynsim_ros.simulation import Simulator
+import numpy as np
+import pytest
 
 OMEGA, STEP, STEPS = 10.0, 1e-3, 1000
 X = OMEGA * STEP

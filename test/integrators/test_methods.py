@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Methods are chosen by name."""
 
-import pytest
-
 from dynsim_ros.integrators import DEFAULT_METHOD, method_named, METHODS
 from dynsim_ros.scene import SceneError
+import pytest
 
 
 def test_rk4_is_the_default():

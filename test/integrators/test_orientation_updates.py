@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Both orientation updates of the sheet against each other and against what each does exactly."""
 
+from dynsim_ros.scene import load_scene, with_values
+from dynsim_ros.simulation import Simulator
 from newton_euler import rotation_distance, rotation_of
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.scene import load_scene, with_values
-from dynsim_ros.simulation import Simulator
 
 OMEGA = np.array([1.0, -2.0, 2.0])
 DURATION = 1.0
@@ -25,7 +24,7 @@ def spun(method, step, scene=None):
 
 @pytest.mark.parametrize('step', [0.1, 0.01])
 def test_a_step_of_the_h_update_turns_by_twice_the_arctangent_of_half_the_angle(step):
-    """q + h H omega / 2, normalised, is a rotation by 2 atan(omega h / 2) about omega."""
+    """Show that q + h H omega / 2, normalised, turns by 2 atan(omega h / 2) about omega."""
     rate = np.linalg.norm(OMEGA)
     angle = round(DURATION / step) * 2 * np.arctan(rate * step / 2)
     q, _ = spun('explicit_euler', step)

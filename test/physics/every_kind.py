@@ -9,19 +9,18 @@ same source then takes no time to compile.
 
 import json
 
-from newton_euler import NewtonEuler, rotation_of
-import numpy as np
-from scipy.spatial.transform import Rotation
-
 from dynsim_ros.physics.energies import energies
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.motion import rates, wrenches
 from dynsim_ros.scene import parse_scene
 from dynsim_ros.simulation.layout import Layout
+from newton_euler import NewtonEuler, rotation_of
+import numpy as np
+from scipy.spatial.transform import Rotation
 
 ENDS = {'a1': 'anchor', 'a2': 'anchor', 'ball': 'rigid', 'crate': 'rigid', 'dot': 'particle',
         'dust': 'particle', 'die': 'rigid', 'potato': 'rigid'}
-SCENE = '''
+SCENE = """
 gravity: 9.81
 down: [0.1, -0.2, -1]
 air: {linear_drag: 0.3, rotational_drag: 0.02, velocity: [1, 2, -1], angular_velocity: [3, 0, 1]}
@@ -35,7 +34,7 @@ bodies:
   die: {shape: box, mass: 0.5, size: [0.4, 0.4, 0.4]}
   top: {shape: rigid, mass: 0.9, inertia: [0.2, 0.2, 0.3]}
 springs:
-'''
+"""
 
 
 def every_spring():

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheet's sections 1.2 and 1.3."""
 
-import numpy as np
-from plain import compiled_and_plain, vectors
-
 from dynsim_ros.physics.air_resistance import air_force, air_torque
 from dynsim_ros.physics.gravity import gravity_force
 from dynsim_ros.scene import Particle, Scene
+import numpy as np
+from plain import compiled_and_plain, vectors
 
 ZERO = (0.0, 0.0, 0.0)
 

@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheet's section 2.1: position and velocity of the attachment point Q."""
 
+from dynsim_ros.physics.kinematics import (attachment_arm, attachment_position,
+                                           attachment_velocity)
+from dynsim_ros.physics.rotation import rotation_matrix
+from dynsim_ros.scene import Box, Particle, RigidBody, Sphere
 from newton_euler import rotation_of
 import numpy as np
 from plain import compiled_and_plain, vectors
 import pytest
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.physics.kinematics import (attachment_arm, attachment_position,
-                                           attachment_velocity)
-from dynsim_ros.physics.rotation import rotation_matrix
-from dynsim_ros.scene import Box, Particle, RigidBody, Sphere
 
 
 def quaternions(count):

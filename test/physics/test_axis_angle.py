@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheet's section 4.2, second bullet: rotations from axis and angle, against scipy."""
 
+from dynsim_ros.physics.rotation import (axis_angle_matrix, axis_angle_quaternion,
+                                         quaternion_product)
 from newton_euler import rotation_of
 import numpy as np
 from plain import compiled_and_plain, vectors
 import pytest
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.physics.rotation import (axis_angle_matrix, axis_angle_quaternion,
-                                         quaternion_product)
 
 # On both sides of where a series takes over, and on to several turns.
 ANGLES = [0.0, 1e-300, 1e-20, 1e-9, 9.999e-5, 1.0001e-4, 1e-3, 0.1, 1.0, 3.1415926, np.pi, 5.0, 40]

@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Energies against their definitions; their slopes are the forces."""
 
+from dynsim_ros.physics.energy import (gravitational_energy, power, rotational_energy,
+                                       scalar_rotational_energy, spring_energy,
+                                       translational_energy)
+from dynsim_ros.physics.spring_damper import spring_force
 import numpy as np
 from plain import compiled_and_plain, vectors
 import pytest
 from scipy.integrate import simpson
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.physics.energy import (gravitational_energy, power, rotational_energy,
-                                       scalar_rotational_energy, spring_energy,
-                                       translational_energy)
-from dynsim_ros.physics.spring_damper import spring_force
 
 UP = (0.0, 0.0, 1.0)
 

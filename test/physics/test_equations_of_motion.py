@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheet's section 3: Newton, Euler in full and for a scalar inertia, moment of a force."""
 
-import numpy as np
-from plain import compiled_and_plain, vectors
-from scipy.spatial.transform import Rotation
-
 from dynsim_ros.physics.equations_of_motion import (angular_acceleration, linear_acceleration,
                                                     moment_of_force, scalar_angular_acceleration)
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.scene import Box, Scene
+import numpy as np
+from plain import compiled_and_plain, vectors
+from scipy.spatial.transform import Rotation
 
 INERTIA = np.array([[2.0, 0.3, -0.1], [0.3, 1.5, 0.2], [-0.1, 0.2, 1.0]])
 

@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Inertia of sphere, cube and box against the integral that defines it."""
 
-import numpy as np
-import pytest
-from scipy.integrate import tplquad
-
 from dynsim_ros.physics.inertia import body_inertia, box_inertia, cube_inertia, sphere_inertia
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.scene import Box, Particle, RigidBody, Scene, Sphere
+import numpy as np
+import pytest
+from scipy.integrate import tplquad
 
 
 def test_sphere_is_two_fifths_m_r_squared():

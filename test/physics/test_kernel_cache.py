@@ -8,11 +8,10 @@ from pathlib import Path
 import shutil
 import sys
 
+from dynsim_ros.integrators import METHODS
 from plain import environment
 import pytest
 from tree import output_of, ROOT
-
-from dynsim_ros.integrators import METHODS
 
 SCRIPT = Path(__file__).with_name('use_kernels.py')
 

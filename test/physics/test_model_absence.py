@@ -4,12 +4,11 @@
 
 from dataclasses import replace
 
-import pytest
-
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.state import state_size
 from dynsim_ros.scene import Air, load_scene, Particle, Scene, Sphere
 from dynsim_ros.simulation import Simulator
+import pytest
 
 BARE = Scene(bodies=(Particle(name='p', mass=1),))
 

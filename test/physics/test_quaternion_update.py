@@ -2,15 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheet's section 4.2, first bullet: the quaternion updated by H, then normalised."""
 
+from dynsim_ros.physics.rotation import (axis_angle_matrix, matrix_quaternion, quaternion_norm,
+                                         quaternion_rate, quaternion_rate_world)
+from dynsim_ros.physics.state import normalise
 from newton_euler import rotation_distance, rotation_of
 import numpy as np
 from plain import compiled_and_plain, vectors
 import pytest
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.physics.rotation import (axis_angle_matrix, matrix_quaternion, quaternion_norm,
-                                         quaternion_rate, quaternion_rate_world)
-from dynsim_ros.physics.state import normalise
 
 
 def h_matrix(q):

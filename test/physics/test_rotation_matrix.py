@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Matrix and quaternion of a rotation, both ways, against scipy."""
 
+from dynsim_ros.physics.rotation import matrix_quaternion, rotate, rotation_matrix
 from newton_euler import rotation_of
 import numpy as np
 from plain import compiled_and_plain, vectors
 import pytest
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.physics.rotation import matrix_quaternion, rotate, rotation_matrix
 
 # Half turns about the axes and near them: the trace or one diagonal element is largest.
 BRANCHES = {'w': [0.1, 0.2, 0.3], 'x': [3.1, 0.2, 0.1], 'y': [0.2, 3.1, 0.1],

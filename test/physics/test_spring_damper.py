@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheet's section 1.1, sentence by sentence."""
 
+from dynsim_ros.physics.spring_damper import (damper_force, length_and_direction, length_rate,
+                                              spring_force)
 import numpy as np
 from plain import compiled_and_plain, vectors
 import pytest
-
-from dynsim_ros.physics.spring_damper import (damper_force, length_and_direction, length_rate,
-                                              spring_force)
 
 
 @compiled_and_plain(length_and_direction)

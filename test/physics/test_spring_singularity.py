@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheet's hint on L -> 0: L + epsilon instead of L."""
 
-import numpy as np
-from plain import compiled_and_plain, vectors
-import pytest
-
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.spring_damper import length_and_direction
 from dynsim_ros.scene import Anchor, parse_scene, Particle, Scene, Sphere, Spring
+import numpy as np
+from plain import compiled_and_plain, vectors
+import pytest
 
 
 def epsilon(natural_length, radius=None):
@@ -57,9 +56,9 @@ def test_epsilon_grows_with_the_lengths_of_the_spring():
 
 
 def test_attached_offsets_count_as_lengths():
-    scene = parse_scene('''
+    scene = parse_scene("""
         bodies:
           a: {shape: sphere, mass: 1, radius: 0.1}
           b: {shape: box, mass: 1, size: [1, 1, 4], position: [9, 0, 0]}
-        springs: {s: {from: a, to: b, stiffness: 1, natural_length: 0.5}}''')
+        springs: {s: {from: a, to: b, stiffness: 1, natural_length: 0.5}}""")
     assert build_model(scene).springs[0].epsilon[0] == epsilon(2.0)

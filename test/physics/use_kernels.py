@@ -15,13 +15,12 @@ if 'nowhere' in sys.argv:
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
     sys.dont_write_bytecode = True
 
-import numpy as np
-
 from dynsim_ros.physics import jit
 from dynsim_ros.physics.energies import energies
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.state import initial_state
 from dynsim_ros.scene import Particle, Scene
+import numpy as np
 
 
 def main():

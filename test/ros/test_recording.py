@@ -19,7 +19,7 @@ def node(start):
 def client(node, connect):
     client = connect(node)
     client.listen({'sphere/pose': POSE, '/diagnostics': DIAGNOSTICS})
-    client.next('sphere/pose', 5)
+    client.more('sphere/pose', 5)
     return client
 
 
@@ -39,7 +39,7 @@ def summary(path):
 
 def last_told(client):
     """Return the recorder's status in the next diagnostics."""
-    (array, *_) = client.next('/diagnostics')
+    (array, *_) = client.more('/diagnostics')
     return array.status[2]
 
 
@@ -64,9 +64,9 @@ def test_twice_is_refused_and_changes_nothing(node, client):
 
 def test_reset_begins_a_new_file(node, client):
     before = set(node.bags)
-    client.next('sphere/pose', 3)
+    client.more('sphere/pose', 3)
     client.reset()
-    client.next('sphere/pose', 3)
+    client.more('sphere/pose', 3)
     client.pause()
     client.reset()
     stopped = client.record(False).message
@@ -88,7 +88,7 @@ def test_directory_can_change_and_has_to_be_writable(node, client):
     (node.folder / 'file').write_text('no folder')
     for directory, reason in (('file', 'File exists'), ('file/below', 'Not a directory'),
                               ('/proc/nowhere', 'No such file or directory')):
-        assert client.set({'record.directory': directory})[0].successful
+        assert client.configure({'record.directory': directory})[0].successful
         response = client.record(True)
         assert not response.success
         assert response.message == (f'record.directory: {directory} cannot be written to: '
@@ -96,21 +96,21 @@ def test_directory_can_change_and_has_to_be_writable(node, client):
     assert client.set_group({'record.directory': 'other/place',
                              'record.compression': 'lz4'}).successful
     assert client.record(True).message.startswith('other/place/sphere_on_spring_')
-    client.next('sphere/pose', 20)
+    client.more('sphere/pose', 20)
     path = node.folder / client.record(False).message.split(' in ')[1]
     assert {index.compression for index in summary(path).chunk_indexes} == {'lz4'}
     client.set_group({'record.directory': 'runs', 'record.compression': 'zstd'})
 
 
 def test_a_reset_that_cannot_record_says_so_and_goes_on(node, client):
-    client.set({'record.directory': '/proc/nowhere'})
+    client.configure({'record.directory': '/proc/nowhere'})
     before = len(node.output)
     assert client.reset().success
-    client.next('sphere/pose', 3)
+    client.more('sphere/pose', 3)
     assert '[ERROR]' in node.output[before:]
     assert 'record.directory: /proc/nowhere cannot be written to' in node.output[before:]
     assert last_told(client).message == 'not recording'
-    client.set({'record.directory': 'runs'})
+    client.configure({'record.directory': 'runs'})
 
 
 def test_full_disk(node, client):
@@ -119,7 +119,7 @@ def test_full_disk(node, client):
     size = max(path.stat().st_size, 1) + 150_000
     limits = resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, (
         size, resource.RLIM_INFINITY))
-    client.set({'rate': 1000.0})
+    client.configure({'rate': 1000.0})
     before = len(node.output)
     client.wait(lambda: 'recorder: ' in node.output[before:])
     assert 'cannot be written: File too large' in node.output[before:]
@@ -127,7 +127,7 @@ def test_full_disk(node, client):
     assert 'cannot be written: File too large' in status.message
     lost = int({item.key: item.value for item in status.values}['lost'])
     assert lost > 0
-    client.next('sphere/pose', 20)
+    client.more('sphere/pose', 20)
     resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, limits)
     stopped = client.record(False)
     assert stopped.success and ' lost: ' in stopped.message
@@ -138,15 +138,15 @@ def test_full_disk(node, client):
     assert node.output.count('recorder: ') == 1
     # and the next one is a good one again
     assert client.record(True).success
-    client.next('sphere/pose', 20)
+    client.more('sphere/pose', 20)
     again = client.record(False).message
     assert 'lost' not in again
     assert summary(node.folder / again.split(' in ')[1]).statistics.message_count > 100
-    client.set({'rate': 100.0})
+    client.configure({'rate': 100.0})
 
 
 def test_all_is_finished_in_the_end(node, client):
-    client.next('sphere/pose', 3)
+    client.more('sphere/pose', 3)
     assert node.stop().count('[INFO]') > 2
     for path in node.bags:
         assert summary(path).statistics.message_count > 0

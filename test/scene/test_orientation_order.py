@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quaternions: the order of their numbers, axis and angle, norm."""
 
+from dynsim_ros.scene import parse_scene
+from dynsim_ros.scene.orientation import from_axis_angle, from_ros, to_ros, unit
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.scene import parse_scene
-from dynsim_ros.scene.orientation import from_axis_angle, from_ros, to_ros, unit
 
 SPHERE = 'bodies: {{s: {{shape: sphere, mass: 1, radius: 1, orientation: {}}}}}'
 

@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A wrong scene is refused with one line: file, field, value, unit, bound, nearest field."""
 
+from dynsim_ros.scene import load_scene, Particle, read_scene, Scene, SceneError
 import pytest
 
-from dynsim_ros.scene import load_scene, Particle, read_scene, Scene, SceneError
-
-GOOD = '''\
+GOOD = """\
 gravity: 9.81
 down: [0, 0, -1]
 air: {linear_drag: 0.1}
@@ -17,11 +16,11 @@ bodies:
   dot: {shape: particle, mass: 1}
 springs:
   s: {from: hand, to: ball, stiffness: 100, natural_length: 0.5}
-'''
+"""
 
 # What is changed in the good scene, to what, and what is then said.
 WRONG = [
-    ('gravity: 9.81', 'gravity: -1', 'gravity: -1 m/s^2 is out of range: 0 to 1000000 m/s^2'),
+    ('gravity: 9.81', 'gravity: -1', 'gravity: -1 m/s^2 is out of range: 0 to 1e+06 m/s^2'),
     ('gravity', 'gravty', "the scene: there is no field 'gravty'; did you mean 'gravity'?"),
     ('gravity: 9.81', 'gravity: [9.81]', 'gravity: [9.81] is not a number; give a number in '
      'm/s^2'),

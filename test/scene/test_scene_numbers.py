@@ -4,10 +4,9 @@
 
 import math
 
+from dynsim_ros.scene import parse_scene, Particle, RigidBody, SceneError, Sphere
 import numpy as np
 import pytest
-
-from dynsim_ros.scene import parse_scene, Particle, RigidBody, SceneError, Sphere
 
 
 def mass(text):

@@ -4,13 +4,12 @@
 
 import math
 
+from dynsim_ros.scene import (Air, Anchor, Box, load_scene, parse_scene, Particle, read_scene,
+                              RigidBody, Scene, scene_names, scene_to_yaml, Sphere, Spring)
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 import yaml
-
-from dynsim_ros.scene import (Air, Anchor, Box, load_scene, parse_scene, Particle, read_scene,
-                              RigidBody, Scene, scene_names, scene_to_yaml, Sphere, Spring)
 
 
 def test_scenes_of_the_package():

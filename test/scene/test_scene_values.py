@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The quantities of a scene by name: the same names as ROS parameters and --set have."""
 
-import numpy as np
-import pytest
-
 from dynsim_ros.scene import (get_value, load_scene, parse_scene, scene_names, scene_quantities,
                               SceneError, with_values)
+import numpy as np
+import pytest
 
 SCENE = load_scene('sphere_on_spring')
 

@@ -5,9 +5,8 @@
 import random
 import time
 
-import pytest
-
 from dynsim_ros.scene import load_scene, parse_scene, scene_names, scene_to_yaml, SceneError
+import pytest
 
 
 @pytest.mark.parametrize('tag', [
@@ -55,11 +54,11 @@ def test_aliases_that_multiply_do_not_fill_the_memory():
 
 
 def test_a_key_that_comes_from_a_merge_is_no_repeated_key():
-    scene = parse_scene('''
+    scene = parse_scene("""
         bodies:
           a: &a {shape: sphere, mass: 1, radius: 0.1}
           b: &b {<<: *a, mass: 2}
-          c: {<<: *b, mass: 3}''')
+          c: {<<: *b, mass: 3}""")
     assert [body.mass for body in scene.bodies] == [1.0, 2.0, 3.0]
     assert {body.radius for body in scene.bodies} == {0.1}
 

@@ -2,20 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Timed commands from a file, and the run that carries them out."""
 
-import numpy as np
-import pytest
-
 from dynsim_ros.scene import load_scene, SceneError
 from dynsim_ros.simulation import CommandError, MoveAnchor, PushBody, SetValues, Simulator
 from dynsim_ros.simulation.command_file import read_commands
 from dynsim_ros.simulation.offline import OfflineRun, simulator_with
+import numpy as np
+import pytest
 
 SCENE = load_scene('sphere_on_spring')
-GOOD = '''
+GOOD = """
 - {time: 0.205, set: {spring.stiffness: 200, rate: 50}}
 - {time: 0.1, anchor: hand, position: [0.1, 0, 2]}
 - {time: 0.1, body: sphere, force: [1, 0, 0], torque: [0, 0, 0.01]}
-'''
+"""
 
 
 class Sink:

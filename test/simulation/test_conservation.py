@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Momentum, angular momentum and energy of bodies that only pull at each other."""
 
+from dynsim_ros.scene import parse_scene, with_values
+from dynsim_ros.simulation import Simulator
 from newton_euler import inertia_matrix, NewtonEuler, rotation_of
 import numpy as np
 import pytest
 
-from dynsim_ros.scene import parse_scene, with_values
-from dynsim_ros.simulation import Simulator
-
-SCENE = parse_scene('''
+SCENE = parse_scene("""
 bodies:
   dot: {shape: particle, mass: 0.7, position: [0, 0.5, 0.2], velocity: [0.2, 0.1, -0.3]}
   ball: {shape: sphere, mass: 1.3, radius: 0.2, position: [1, 0, 0], angular_velocity: [1, 2, 0]}
@@ -22,7 +21,7 @@ springs:
              damping: 0}
   crate_dot: {from: crate, from_offset: [0, 0.25, 0], to: dot, stiffness: 20,
               natural_length: 0.5, damping: 0}
-''')
+""")
 DAMPED = with_values(SCENE, {f'{spring.name}.damping': 0.8 for spring in SCENE.springs})
 
 

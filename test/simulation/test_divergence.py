@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run that is no longer finite stops, at its last finite state, and says why."""
 
-import numpy as np
-import pytest
-
 from dynsim_ros.scene import load_scene, with_values
 from dynsim_ros.simulation import DivergenceError, SetValues, Simulator
+import numpy as np
+import pytest
 
 
 def diverged(**settings):

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The energy of a run changes by the work that damper, air, anchor and push do, each alone too."""
 
+from dynsim_ros.scene import load_scene, with_values
+from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
 import numpy as np
 import pytest
 from scipy.integrate import simpson
-
-from dynsim_ros.scene import load_scene, with_values
-from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
 
 SCENE = load_scene('sphere_on_spring')
 LOSSLESS = {'air.linear_drag': 0, 'air.rotational_drag': 0, 'spring.damping': 0}

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight and spin in air against their closed forms."""
 
+from dynsim_ros.scene import load_scene, with_values
+from dynsim_ros.simulation import Simulator
 from newton_euler import rotation_distance, rotation_of
 import numpy as np
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.scene import load_scene, with_values
-from dynsim_ros.simulation import Simulator
 
 WIND, DOWN = np.array([3.0, 1.0, -0.5]), np.array([0.6, 0.0, -0.8])
 
@@ -22,7 +21,7 @@ def run(scene):
 
 
 def test_ballistic_flight_in_wind():
-    """m v' = m g down - b (v - wind) for any direction of down."""
+    """Show m v' = m g down - b (v - wind) for any direction of down."""
     scene = ball(down=DOWN, air__velocity=WIND, air__linear_drag=0.2)
     body, rate = scene.bodies[0], 0.2 / 0.2
     r, v = np.array(body.position), np.array(body.velocity)

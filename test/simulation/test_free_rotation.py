@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Torque-free rotation against its closed forms: symmetric top and asymmetric body."""
 
+from dynsim_ros.scene import Box, RigidBody, Scene
+from dynsim_ros.simulation import Simulator
 from newton_euler import rotation_distance, rotation_of
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipj, ellipk
-
-from dynsim_ros.scene import Box, RigidBody, Scene
-from dynsim_ros.simulation import Simulator
 
 START = Rotation.from_rotvec([0.4, -1.1, 0.6])
 

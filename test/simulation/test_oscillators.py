@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Spring and damper against the closed forms of the damped and of the plane oscillator."""
 
-import numpy as np
-import pytest
-
 from dynsim_ros.scene import load_scene, parse_scene, scene_to_yaml, with_values
 from dynsim_ros.simulation import Simulator
+import numpy as np
+import pytest
 
 STIFFNESS, MASS = 50.0, 2.0
 OMEGA = np.sqrt(STIFFNESS / MASS)

@@ -4,12 +4,11 @@
 
 from dataclasses import replace
 
-import pytest
-
 from dynsim_ros.scene import (Air, load_scene, parse_scene, Particle, Scene, scene_quantities,
                               scene_to_yaml, SceneError)
 from dynsim_ros.simulation import Simulator
 from dynsim_ros.simulation.snapshot import WRENCH_KINDS
+import pytest
 
 ROTATING = ('orientation', 'angular', 'torque', 'rotational', 'inertia', 'radius', 'offset')
 
@@ -53,8 +52,8 @@ def test_a_scene_cannot_give_them(field):
 
 def test_a_spring_attaches_to_the_point_itself():
     with pytest.raises(SceneError, match="s.to_offset: 'p' is a point and has no attachment"):
-        parse_scene('''
+        parse_scene("""
             anchors: {a: {position: [0, 0, 0]}}
             bodies: {p: {shape: particle, mass: 1}}
             springs: {s: {from: a, to: p, stiffness: 1, natural_length: 1, to_offset: [0, 0, 1]}}
-            ''')
+            """)

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commanded wrenches: what they do, for how long, and what is refused."""
 
+from dynsim_ros.scene import load_scene, with_values
+from dynsim_ros.simulation import CommandError, PushBody, Simulator
 from newton_euler import NewtonEuler
 import numpy as np
 import pytest
-
-from dynsim_ros.scene import load_scene, with_values
-from dynsim_ros.simulation import CommandError, PushBody, Simulator
 
 FREE = with_values(load_scene('particle_on_spring'), {
     'gravity': 0, 'spring.stiffness': 0, 'particle.mass': 2, 'particle.position': (0, 0, 0),

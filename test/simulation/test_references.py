@@ -9,12 +9,11 @@ How reference/references.json came about, and how it was verified, is in make_re
 import json
 from pathlib import Path
 
+from dynsim_ros.scene import load_scene, scene_names
+from dynsim_ros.simulation import Simulator
 from newton_euler import rotation_distance, rotation_of
 import numpy as np
 import pytest
-
-from dynsim_ros.scene import load_scene, scene_names
-from dynsim_ros.simulation import Simulator
 
 REFERENCES = json.loads(
     Path(__file__).with_name('reference').joinpath('references.json').read_text(encoding='utf-8'))

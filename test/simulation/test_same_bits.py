@@ -5,13 +5,12 @@
 import json
 import sys
 
+from dynsim_ros.scene import load_scene, scene_names
+from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
 from hash_of_runs import bits_of
 from plain import environment, in_plain_python
 import pytest
 from tree import output_of, ROOT
-
-from dynsim_ros.scene import load_scene, scene_names
-from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
 
 SCRIPT = ROOT / 'test' / 'hash_of_runs.py'
 

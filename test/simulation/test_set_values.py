@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quantities change while running: as a group, whole or not at all."""
 
-import numpy as np
-import pytest
-
 from dynsim_ros.scene import Box, load_scene, Scene, SceneError
 from dynsim_ros.simulation import SetValues, Simulator
+import numpy as np
+import pytest
 
 SCENE = load_scene('sphere_on_spring')
 

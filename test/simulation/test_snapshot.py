@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a snapshot says of forces, moments and energies."""
 
-from newton_euler import NewtonEuler, rotation_of
-import numpy as np
-import pytest
-
 from dynsim_ros.scene import load_scene, scene_names
 from dynsim_ros.simulation import Simulator
 from dynsim_ros.simulation.snapshot import WRENCH_KINDS
+from newton_euler import NewtonEuler, rotation_of
+import numpy as np
+import pytest
 
 
 @pytest.mark.parametrize('name', scene_names())

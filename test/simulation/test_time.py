@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time is an integer number of nanoseconds; who samples a run changes no bit of it."""
 
+from dynsim_ros.scene import load_scene, Particle, Scene, with_values
+from dynsim_ros.simulation import MoveAnchor, PushBody, Settings, SetValues, Simulator
 import numpy as np
 import pytest
-
-from dynsim_ros.scene import load_scene, Particle, Scene, with_values
-from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Settings, Simulator
 
 SECOND = 1_000_000_000
 MOVING = with_values(load_scene('sphere_on_spring'), {'hand.velocity': (0.3, 0.1, -0.2)})

@@ -16,12 +16,11 @@ is chaotic, errors grow tenfold in half a second: its reference ends at 1 s.
 import json
 from pathlib import Path
 
+from dynsim_ros.scene import load_scene, Rigid, scene_names
 import heyoka as hy
 from newton_euler import inertia_matrix, NewtonEuler, rotation_distance
 import numpy as np
 from scipy.spatial.transform import Rotation
-
-from dynsim_ros.scene import load_scene, Rigid, scene_names
 
 AGREEMENT = 2e-11
 DURATIONS = {'double_pendulum_of_spheres': 1.0}
