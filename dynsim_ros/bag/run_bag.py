@@ -13,6 +13,7 @@ from .recorder import Recorder
 from .writer import BagWriter
 from .. import __version__
 from ..messages.commands import command_messages, command_topics
+from ..messages.epoch import EPOCH
 from ..messages.qos import COMMAND
 from ..scene import get_values, scene_to_yaml
 
@@ -25,14 +26,15 @@ class RunBag:
     """
     Records one epoch of a run.
 
-    channels: what is recorded besides commands; node: full name of the node, prefix of relative
-    topics; parameters: {name: value} beside those of scene and settings. The messages of a tick
-    are handed over as {topic: CDR bytes}. Raises OSError or ValueError if the file cannot be
-    made; it is never overwritten.
+    channels: what is recorded besides the epoch and commands; node: full name of the node;
+    resolve(topic): returns the full name of a topic, None to put relative ones below the node;
+    parameters: {name: value} beside those of scene and settings. The messages of a tick are
+    handed over as {topic: CDR bytes}. Raises OSError or ValueError if the file cannot be made;
+    it is never overwritten.
     """
 
-    def __init__(self, path, simulator, channels, *, node='/dynsim', compression='zstd',
-                 parameters=None, wait=False):
+    def __init__(self, path, simulator, channels, *, node='/dynsim', resolve=None,
+                 compression='zstd', parameters=None, wait=False):
         """Create the file and write down how the run stands."""
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -44,26 +46,32 @@ class RunBag:
                   **(parameters or {})}
         writer.add_metadata(PARAMETER_METADATA,
                             {name: json.dumps(value) for name, value in values.items()})
-        self._ids = {
-            topic: writer.add_channel(_resolved(topic, node), type_name, qos)
-            for topic, type_name, qos in [
-                *((channel.topic, channel.type_name, channel.qos) for channel in channels),
-                *((topic, name, COMMAND) for topic, name
-                  in command_topics(simulator.scene).items())]}
+        resolve = resolve or (lambda topic: topic if topic[0] == '/' else f'{node}/{topic}')
+        topics = [(channel.topic, channel.type_name, channel.qos)
+                  for channel in (EPOCH, *channels)]
+        topics += [(topic, name, COMMAND)
+                   for topic, name in command_topics(simulator.scene).items()]
+        self._ids = {topic: writer.add_channel(resolve(topic), type_name, qos)
+                     for topic, type_name, qos in topics}
+        # Latched: who reads the bag is told it first, as who subscribes is.
+        self._latched = {EPOCH.topic: EPOCH.encode(simulator.snapshot(), None)}
         self.recorder = Recorder(writer, wait=wait)
         self.path = path
 
     def put(self, stamp_ns, messages):
         """Record {topic: CDR bytes} at a time [ns]."""
-        ids = self._ids
-        self.recorder.put(stamp_ns, [(ids[topic], _as_sent(data))
-                                     for topic, data in messages.items()])
+        self._put(stamp_ns, messages.items())
 
     def put_command(self, stamp_ns, command):
         """Record a command that took effect at a time [ns]."""
-        messages = command_messages(command, stamp_ns)
-        self.recorder.put(stamp_ns, [(self._ids[topic], _as_sent(data))
-                                     for topic, data in messages])
+        self._put(stamp_ns, command_messages(command, stamp_ns))
+
+    def _put(self, stamp_ns, messages):
+        ids = self._ids
+        if self._latched:
+            messages = [*self._latched.items(), *messages]
+            self._latched = None
+        self.recorder.put(stamp_ns, [(ids[topic], _as_sent(data)) for topic, data in messages])
 
     def close(self):
         """Finish the file; harmless when repeated."""
@@ -73,10 +81,6 @@ class RunBag:
 def _as_sent(data):
     """Return CDR bytes as subscribers get them: DDS pads them to a multiple of four."""
     return data + bytes(-len(data) % 4)
-
-
-def _resolved(topic, node):
-    return topic if topic.startswith('/') else f'{node}/{topic}'
 
 
 def _run_metadata(simulator, node):

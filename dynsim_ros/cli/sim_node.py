@@ -65,16 +65,18 @@ def _simulate(options, ros_args, stop) -> int:
                 _spin_until_end(node, spin_some, stop, line)
         finally:
             line.end()
-            recorded = node.end()
+            node.end()
             node.destroy_node()
-    if line.enabled:
-        print(f'recorded {recorded}' if recorded else 'nothing was recorded')
     return 0
 
 
 def _spin_until_end(node, spin_some, stop, line):
     while not (stop.requested or node.run.finished):
-        spin_some(0.1)
+        try:
+            spin_some(0.1)
+        except (TypeError, ValueError) as error:
+            # rclpy itself fails on requests such as a parameter of a type that does not exist.
+            node.get_logger().error(f'a request was not understood, and dropped: {error}')
         if line.is_due():
             line.show(_status(node))
 

@@ -16,11 +16,11 @@ class Run:
     What the node's timer, subscriptions and services act on; all of them in one thread.
 
     simulator; topics: Topics; clock: ClockPublisher; options: dict of the node's own parameters,
-    always up to date; name: full name of the node; log: its logger; origin_ns: added to
-    simulated time in stamps; waiting: True until it is known, nothing is published before.
+    always up to date; node: the node, for its names and its log; origin_ns: added to simulated
+    time in stamps; waiting: True until it is known, nothing is published before.
     """
 
-    def __init__(self, simulator: Simulator, topics, clock, options, name, log):
+    def __init__(self, simulator: Simulator, topics, clock, options, node):
         self.simulator = simulator
         self.topics = topics
         self.bag = None
@@ -30,8 +30,9 @@ class Run:
         self.paused = False
         self._clock = clock
         self._options = options
-        self._name = name
-        self._log = log
+        self._name = node.get_fully_qualified_name()
+        self._resolve = topics.resolve
+        self._log = node.get_logger()
         self._bag_error = None
 
     @property
@@ -118,13 +119,14 @@ class Run:
             try:
                 return RunBag(
                     path, self.simulator, [*self.topics.channels, DIAGNOSTICS], node=self._name,
-                    compression=self._options['record.compression'], parameters=self._options)
+                    resolve=self._resolve, compression=self._options['record.compression'],
+                    parameters=self._options)
             except FileExistsError:
                 if not path.exists():
                     raise
 
     def stop_recording(self):
-        """End the bag and return what it holds, in words; None if there was none."""
+        """End the bag; log and return what it holds, in words, None if there was none."""
         if self.bag is None:
             return None
         bag, self.bag = self.bag, None

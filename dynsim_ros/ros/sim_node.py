@@ -19,13 +19,10 @@ from .qos import profile
 from .run import Run
 from .services import Services
 from .topics import Topics
-from ..messages.cdr import encode
-from ..messages.qos import LATCHED
+from ..messages.epoch import EPOCH
 from ..messages.scene_channels import scene_channels
 from ..scene import SceneError
 from ..simulation import Simulator
-
-_EPOCH = 'std_msgs/msg/UInt64'
 
 
 class SimNode(Node):
@@ -49,8 +46,7 @@ class SimNode(Node):
         simulator.prepare()
         try:
             topics = Topics(self, scene_channels(simulator.scene, simulator.layout))
-            self.run = Run(simulator, topics, ClockPublisher(self), self.parameters.own,
-                           self.get_fully_qualified_name(), self.get_logger())
+            self.run = Run(simulator, topics, ClockPublisher(self), self.parameters.own, self)
             self.commands = Commands(self, self.run)
         except (AssertionError, RuntimeError, TypeError) as error:
             # What rclpy raises for a quality of service that it was told by a parameter.
@@ -63,7 +59,7 @@ class SimNode(Node):
         self.pacer = Pacer(self.parameters.own['real_time_factor'])
         self.diagnostics = Diagnostics(self, self.run, self.pacer)
         self._epoch_publisher = self.create_publisher(
-            message_class(_EPOCH), '~/epoch', profile(LATCHED))
+            message_class(EPOCH.type_name), f'~/{EPOCH.topic}', profile(EPOCH.qos))
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._timer = None
         self._follows_clock = False
@@ -82,10 +78,10 @@ class SimNode(Node):
                                                     clock=self._steady)
 
     def end(self):
-        """Stop ticking and finish the bag; return what was recorded, in words, or None."""
+        """Stop ticking and finish the bag."""
         if self._timer is not None:
             self._timer.cancel()
-        return self.run.stop_recording()
+        self.run.stop_recording()
 
     def set_parameters_atomically(self, parameter_list):
         """Set a group of parameters, all of them or none, with our reasons where refused."""
@@ -190,8 +186,7 @@ class SimNode(Node):
         self._begin_epoch()
 
     def _begin_epoch(self):
-        epoch = encode(_EPOCH, {'data': self.run.simulator.epoch})
-        self._epoch_publisher.publish(epoch)
+        self._epoch_publisher.publish(EPOCH.encode(self.run.simulator.snapshot(), None))
         self.run.publish()
 
     def _publish_diagnostics(self):

@@ -18,7 +18,12 @@ class Topics:
     def __init__(self, node, channels):
         self.channels = channels
         self.skipped = 0
+        self._node = node
         self._publishers = [(channel, self._publisher(node, channel)) for channel in channels]
+
+    def resolve(self, topic):
+        """Return the full name that a topic has here, remapped if it is."""
+        return self._node.resolve_topic_name(topic if topic[0] == '/' else f'~/{topic}')
 
     def _publisher(self, node, channel):
         return node.create_publisher(

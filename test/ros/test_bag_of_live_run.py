@@ -9,11 +9,12 @@ from geometry_msgs.msg import PointStamped, WrenchStamped
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 import pytest
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from ros_client import stamps, type_named
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import get_types_from_msg, get_typestore, Stores
 from scene_topics import DIAGNOSTICS, forces, positions, SPHERE
+from std_msgs.msg import UInt64
 
 TOPICS = {**SPHERE, '/diagnostics': DIAGNOSTICS}
 TICK = 10_000_000
@@ -138,6 +139,12 @@ def test_times_are_the_stamps_and_never_go_back(run):
             assert message.log_time == stamp.sec * 10 ** 9 + stamp.nanosec, channel.topic
 
 
+def test_the_epoch_stands_first(run):
+    epoch = (run.messages[0][2].log_time, bytes(serialize_message(UInt64(data=0))))
+    assert run.messages[0][1].topic == '/dynsim/epoch'
+    assert run.of('/dynsim/epoch') == [epoch]
+
+
 def test_commands_are_there_when_they_took_effect(run):
     (moved,) = run.of('/dynsim/hand/command')
     (pushed,) = run.of('/dynsim/sphere/wrench_command')
@@ -172,8 +179,8 @@ def test_the_file_is_a_finished_ros2_bag(run):
     assert run.summary.statistics.message_count == len(run.messages)
     assert run.reply == f'{len(run.messages)} messages in {run.path.parent.name}/{run.path.name}'
     channels = {channel.topic: channel for channel in run.summary.channels.values()}
-    assert set(channels) == {*run.types, '/dynsim/hand/command', '/dynsim/parameter_command',
-                             '/dynsim/sphere/wrench_command'}
+    assert set(channels) == {*run.types, '/dynsim/epoch', '/dynsim/hand/command',
+                             '/dynsim/parameter_command', '/dynsim/sphere/wrench_command'}
     assert {channel.message_encoding for channel in channels.values()} == {'cdr'}
     assert 'rosbag2' not in run.metadata
 

@@ -104,6 +104,9 @@ def test_each_records_its_own_file(clients, left, right):
         nodes[run['node']] = topics
     assert set(nodes) == {'/left/dynsim', '/right/hand/model'}
     assert '/left/dynsim/sphere/pose' in nodes['/left/dynsim']
+    # remapped topics are recorded under the names that they have
+    assert {'/tracked', '/clicked_point'} <= nodes['/right/hand/model']
+    assert '/right/hand/model/sphere/pose' not in nodes['/right/hand/model']
 
 
 def test_names_chosen_at_the_same_moment(clients, left):

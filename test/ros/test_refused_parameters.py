@@ -5,6 +5,8 @@
 import math
 
 import pytest
+from rcl_interfaces.msg import Parameter as ParameterMessage, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from scene_topics import forces, SPHERE
 
@@ -77,3 +79,11 @@ def test_nothing_takes_a_value_away(client):
     for name in ('sphere.mass', 'scene', 'use_sim_time'):
         assert not client.configure({name: Parameter(name).value})[0].successful
     assert client.get('sphere.mass', 'scene', 'use_sim_time') == before
+
+
+def test_a_request_that_rclpy_cannot_read_ends_nothing(client):
+    unreadable = ParameterMessage(name='sphere.mass', value=ParameterValue(type=42))
+    client.call_async('set_parameters', SetParameters, parameters=[unreadable])
+    assert client.configure({'sphere.mass': 2.0})[0].successful
+    client.steps(1, 'sphere/pose')
+    assert forces([client.last('sphere/wrench/gravity')]).tolist() == [[0.0, 0.0, -2.0 * 9.81]]
