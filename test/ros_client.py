@@ -13,6 +13,7 @@ from rcl_interfaces.srv import (
     SetParametersAtomically,
 )
 import rclpy
+from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
@@ -125,13 +126,21 @@ class Client:
             heard.clear()
 
     def publish(self, topic, message, qos=10):
-        """Publish a message after a subscriber was found."""
+        """
+        Publish a message after a subscriber was found.
+
+        A subscriber may find the publisher later than that finds it; a service called meanwhile
+        would overtake the message. Hence wait until the first message is there.
+        """
         topic = self.full(topic)
         if topic not in self._publishers:
             publisher = self.node.create_publisher(type(message), topic, qos)
             self.wait(publisher.get_subscription_count)
             self._publishers[topic] = publisher
-        self._publishers[topic].publish(message)
+            publisher.publish(message)
+            assert publisher.wait_for_all_acked(Duration(seconds=10))
+        else:
+            self._publishers[topic].publish(message)
 
     def call_async(self, name, kind, **fields):
         """Call a service; return the future."""

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from .vector import cross, dot, scale
 from ..scene import Box, RigidBody, Sphere
 
 
@@ -44,3 +45,16 @@ def _given_inertia(inertia):
     if np.array_equal(matrix, matrix[0, 0] * np.eye(3)):
         return float(matrix[0, 0])
     return matrix
+
+
+def inverse(matrix):
+    """
+    Return the inverse of an inertia matrix: (3, 3) [1 / (kg m^2)].
+
+    By cofactors, not by a library: those differ in the last bits from machine to machine.
+    """
+    rows = [tuple(row) for row in matrix.tolist()]
+    cofactors = [cross.py_func(rows[1], rows[2]), cross.py_func(rows[2], rows[0]),
+                 cross.py_func(rows[0], rows[1])]
+    determinant = dot.py_func(rows[0], cofactors[0])
+    return np.array([scale.py_func(1.0 / determinant, column) for column in cofactors]).T

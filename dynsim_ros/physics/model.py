@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .gravity import gravity_force
-from .inertia import body_inertia
+from .inertia import body_inertia, inverse
+from .vector import norm
 from ..scene import Particle, Rigid
 
 # The direction of a spring is r / (L + epsilon). At this fraction of the spring's own lengths
@@ -102,7 +103,7 @@ def build_model(scene):
         round_inertia=np.array([inertias[i] for i in round_body]) if len(round_body) else None,
         general_body=general_body if len(general_body) else None,
         inertia=matrices,
-        inverse_inertia=None if matrices is None else np.linalg.inv(matrices),
+        inverse_inertia=None if matrices is None else np.array([*map(inverse, matrices)]),
         weight=weight, springs=_spring_groups(scene, bodies), air=_air(scene, inertias))
 
 
@@ -160,5 +161,5 @@ def _offset(body, offset):
 
 def _epsilon(spring, *ends):
     lengths = [spring.natural_length]
-    lengths += [np.linalg.norm(_offset(*end)) for end in ends if isinstance(end[0], Rigid)]
+    lengths += [norm.py_func(_offset(*end)) for end in ends if isinstance(end[0], Rigid)]
     return _EPSILON * (max(*lengths, _SHORTEST) if any(lengths) else 1.0)

@@ -31,14 +31,16 @@ def from_axis_angle(axis, angle):
 
     axis: (3,) direction in world, not zero; angle: [rad].
     """
-    length = math.sqrt(sum(a * a for a in axis))
+    x, y, z = axis
+    length = math.sqrt(x * x + y * y + z * z)
     half = 0.5 * angle
     return (math.cos(half), *(math.sin(half) * a / length for a in axis))
 
 
 def unit(q):
     """Return q, of norm 1 to the last bits; raise ValueError if its norm is not close to 1."""
-    norm = math.sqrt(sum(a * a for a in q))
+    w, x, y, z = q
+    norm = math.sqrt(w * w + x * x + y * y + z * z)
     if not abs(norm - 1.0) <= NORM_TOLERANCE:
         raise ValueError(f'its norm is {norm:.6g}, a unit quaternion is needed')
     # Already of norm 1 to the last bit or two: dividing again would move it.

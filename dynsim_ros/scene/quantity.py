@@ -59,7 +59,8 @@ class Quantity:
             return self._inertia(name, value)
         numbers = self._numbers(name, value, 4 if self.kind == 'orientation' else 3)
         if self.kind == 'direction':
-            length = math.hypot(*numbers)
+            x, y, z = numbers
+            length = math.sqrt(x * x + y * y + z * z)
             if length < 1e-9:
                 raise SceneError(f'{name}: {list(numbers)} has no direction; give a vector that '
                                  'is not zero')

@@ -234,7 +234,9 @@ class Simulator:
         self._reference_energy += self._energy() - before
 
     def _energy(self):
-        return sum(energies(self._model, self._anchors.motion_at(self.time_ns), 0.0, self._state))
+        kinetic, gravitational, spring = energies(
+            self._model, self._anchors.motion_at(self.time_ns), 0.0, self._state)
+        return kinetic + gravitational + spring
 
 
 def _is_finite(state):

@@ -114,7 +114,7 @@ class Snapshot:
     def energy(self):
         """Return the Energy of this instant."""
         kinetic, gravitational, spring = energies(self.model, self.anchors, 0.0, self.state)
-        work = dict(zip(WORKS, self.state[self.layout.work].tolist()))
+        damper, air, anchor, push = works = self.state[self.layout.work].tolist()
         total = kinetic + gravitational + spring
-        return Energy(kinetic, gravitational, spring, work,
-                      total - self.reference_energy - sum(work.values()))
+        return Energy(kinetic, gravitational, spring, dict(zip(WORKS, works)),
+                      total - self.reference_energy - (damper + air + anchor + push))

@@ -110,7 +110,7 @@ def test_topics_commands_and_services(client):
 
 
 def test_diagnostics(client):
-    status = client.next('/diagnostics')[-1].status
+    status = client.more('/diagnostics')[-1].status
     assert {part.name: [value.key for value in part.values] for part in status} == {
         quoted(row[0])[0]: quoted(row[1]) for row in table('status in `/diagnostics`')}
 
