@@ -31,11 +31,11 @@ class Recorder:
     as given at the start, may be changed.
     """
 
-    def __init__(self, writer: BagWriter, *, capacity: int = 20_000, wait: bool = False):
+    def __init__(self, writer: BagWriter, *, capacity: int = 200_000, wait: bool = False):
         """
         Start the thread, which owns the writer from here on.
 
-        capacity: number of `put`s that may be waiting. Beyond it messages are lost, or with
+        capacity: number of messages that may be waiting. Beyond it messages are lost, or with
         `wait` (for runs that are not bound to real time) `put` waits for the disk.
         """
         self.error: str | None = None
@@ -43,7 +43,9 @@ class Recorder:
         self._capacity = capacity
         self.wait = wait
         self._queue: deque = deque()
-        self._put = self._queue.append
+        # Each is counted up by one thread alone; what is between them waits.
+        self._handed_over = 0
+        self._taken = 0
         self._lost = 0
         self._overflow = 0
         self._writer_lock = threading.RLock()
@@ -67,17 +69,19 @@ class Recorder:
         """Return the path of the bag."""
         return self._writer.path
 
-    def put(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]]):
+    def put(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]], keep: bool = False):
         """
         Hand over the messages of one instant, as (channel id, CDR bytes), at a time in ns.
 
-        Returns at once; to be called from one thread only. After `close` messages are lost.
+        keep: for what must not be lost even where there is no room. Returns at once; to be
+        called from one thread only. After `close` messages are lost.
         """
-        if len(self._queue) >= self._capacity or self._closing:
-            if not self._make_room():
+        if self._is_full() or self._closing:
+            if not self._make_room() and (self._closing or not keep):
                 self._overflow += len(messages)
                 return
-        self._put((stamp_ns, messages))
+        self._handed_over += len(messages)
+        self._queue.append((stamp_ns, messages))
 
     def add_channel(self, topic: str, type_name: str, qos: Qos = STATE) -> int:
         """Declare a topic, as `BagWriter.add_channel` does."""
@@ -110,10 +114,14 @@ class Recorder:
 
     def _make_room(self) -> bool:
         """Wait for the thread if that is wanted; tell whether there is room now."""
-        while self.wait and not self._closing and len(self._queue) >= self._capacity:
+        while self.wait and not self._closing and self._is_full():
             self._wake.set()
             time.sleep(0.001)
-        return len(self._queue) < self._capacity and not self._closing
+        return not (self._is_full() or self._closing)
+
+    def _is_full(self) -> bool:
+        """Tell whether as much waits as may."""
+        return self._handed_over - self._taken >= self._capacity
 
     def _run(self):
         """Write batches until the recorder is closed and nothing waits any more."""
@@ -134,6 +142,7 @@ class Recorder:
         while self._queue:
             stamp_ns, messages = self._queue.popleft()
             self._attempt(self._write, stamp_ns, messages, count=len(messages))
+            self._taken += len(messages)
             written += len(messages)
             if written >= _SLICE and not self._closing:
                 written = 0

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from datetime import datetime, timezone
 import json
 from pathlib import Path
+import re
 
 from .recorder import Recorder
 from .writer import BagWriter
@@ -36,27 +37,21 @@ class RunBag:
     def __init__(self, path, simulator, channels, *, node='/dynsim', resolve=None,
                  compression='zstd', parameters=None, wait=False):
         """Create the file and write down how the run stands."""
-        path = Path(path)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        writer = BagWriter(path, compression=compression, library=f'dynsim_ros {__version__}')
-        writer.add_attachment(SCENE_ATTACHMENT, scene_to_yaml(simulator.scene).encode(),
-                              'application/yaml')
-        writer.add_metadata(RUN_METADATA, _run_metadata(simulator, node))
-        values = {**get_values(simulator.scene), **asdict(simulator.settings),
-                  **(parameters or {})}
-        writer.add_metadata(PARAMETER_METADATA,
-                            {name: json.dumps(value) for name, value in values.items()})
-        resolve = resolve or (lambda topic: topic if topic[0] == '/' else f'{node}/{topic}')
-        topics = [(channel.topic, channel.type_name, channel.qos)
-                  for channel in (EPOCH, *channels)]
-        topics += [(topic, name, COMMAND)
-                   for topic, name in command_topics(simulator.scene).items()]
-        self._ids = {topic: writer.add_channel(resolve(topic), type_name, qos)
-                     for topic, type_name, qos in topics}
+        self.path = Path(path).expanduser()
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        writer = BagWriter(self.path, compression=compression,
+                           library=f'dynsim_ros {__version__}')
+        try:
+            _describe(writer, simulator, node, parameters or {})
+            resolve = resolve or (lambda topic: topic if topic[0] == '/' else f'{node}/{topic}')
+            self._ids = {topic: writer.add_channel(resolve(topic), type_name, qos)
+                         for topic, type_name, qos in _topics(simulator.scene, channels)}
+        except BaseException:
+            writer.close()
+            raise
         # Latched: who reads the bag is told it first, as who subscribes is.
         self._latched = {EPOCH.topic: EPOCH.encode(simulator.snapshot(), None)}
         self.recorder = Recorder(writer, wait=wait)
-        self.path = path
 
     def put(self, stamp_ns, messages):
         """Record {topic: CDR bytes} at a time [ns]."""
@@ -64,14 +59,15 @@ class RunBag:
 
     def put_command(self, stamp_ns, command):
         """Record a command that took effect at a time [ns]."""
-        self._put(stamp_ns, command_messages(command, stamp_ns))
+        self._put(stamp_ns, command_messages(command, stamp_ns), keep=True)
 
-    def _put(self, stamp_ns, messages):
+    def _put(self, stamp_ns, messages, keep=False):
         ids = self._ids
         if self._latched:
             messages = [*self._latched.items(), *messages]
             self._latched = None
-        self.recorder.put(stamp_ns, [(ids[topic], _as_sent(data)) for topic, data in messages])
+        self.recorder.put(
+            stamp_ns, [(ids[topic], _as_sent(data)) for topic, data in messages], keep)
 
     def close(self):
         """Finish the file; harmless when repeated."""
@@ -83,6 +79,22 @@ def _as_sent(data):
     return data + bytes(-len(data) % 4)
 
 
+def _topics(scene, channels):
+    """Return [(topic, type name, quality of service)] of all that a bag can hold."""
+    topics = [(channel.topic, channel.type_name, channel.qos) for channel in (EPOCH, *channels)]
+    return topics + [(topic, name, COMMAND) for topic, name in command_topics(scene).items()]
+
+
+def _describe(writer, simulator, node, parameters):
+    """Write down the scene, the parameters and how the run stands."""
+    writer.add_attachment(SCENE_ATTACHMENT, scene_to_yaml(simulator.scene).encode(),
+                          'application/yaml')
+    writer.add_metadata(RUN_METADATA, _run_metadata(simulator, node))
+    values = {**get_values(simulator.scene), **asdict(simulator.settings), **parameters}
+    writer.add_metadata(PARAMETER_METADATA,
+                        {name: json.dumps(value) for name, value in values.items()})
+
+
 def _run_metadata(simulator, node):
     return {'version': __version__, 'scene': simulator.scene.name, 'node': node,
             'epoch': str(simulator.epoch), 'start_tick': str(simulator.tick),
@@ -92,7 +104,9 @@ def _run_metadata(simulator, node):
 
 def new_path(directory, scene_name):
     """Return a path for a new bag: the scene's name and the time of day, and not yet there."""
-    stem = f'{scene_name}_{datetime.now():%Y%m%d_%H%M%S}'
-    candidates = (Path(directory, f'{stem}{suffix}.mcap') for suffix in
+    # A scene may have any name; what is no part of a file name is left out.
+    name = re.sub(r'[^\w-]+', '_', scene_name)[:80]
+    stem = f'{name}_{datetime.now():%Y%m%d_%H%M%S}'
+    candidates = (Path(directory, f'{stem}{suffix}.mcap').expanduser() for suffix in
                   ('', *(f'_{i}' for i in range(2, 1000))))
     return next(path for path in candidates if not path.exists())

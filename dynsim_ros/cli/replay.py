@@ -138,16 +138,16 @@ def _parser() -> argparse.ArgumentParser:
 def _positive(text: str) -> float:
     """Return a number above 0."""
     value = _number(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError(f'{text} is not above 0')
+    if not 1e-6 <= value <= 1e6:
+        raise argparse.ArgumentTypeError(f'{text} is out of range: 1e-06 to 1e+06')
     return value
 
 
 def _not_negative(text: str) -> float:
     """Return a number of at least 0."""
     value = _number(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f'{text} is below 0')
+    if not 0 <= value <= 1e9:
+        raise argparse.ArgumentTypeError(f'{text} s is out of range: 0 to 1e+09 s')
     return value
 
 

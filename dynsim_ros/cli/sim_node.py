@@ -72,11 +72,7 @@ def _simulate(options, ros_args, stop) -> int:
 
 def _spin_until_end(node, spin_some, stop, line):
     while not (stop.requested or node.run.finished):
-        try:
-            spin_some(0.1)
-        except (TypeError, ValueError) as error:
-            # rclpy itself fails on requests such as a parameter of a type that does not exist.
-            node.get_logger().error(f'a request was not understood, and dropped: {error}')
+        spin_some(0.1)
         if line.is_due():
             line.show(_status(node))
 

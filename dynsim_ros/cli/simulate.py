@@ -9,8 +9,6 @@ import signal
 import sys
 import time
 
-import yaml
-
 from .progress import Progress
 
 _DESCRIPTION = """\
@@ -86,6 +84,9 @@ def _simulate(options) -> int:
     progress.say(f'{simulator.time:g} s simulated in {elapsed:.2f} s '
                  f'({simulator.time / elapsed:.3g} times real time); '
                  f'{bag.recorder.messages} messages in {bag.path}')
+    if run.commands and status == 0:
+        progress.say(f'{len(run.commands)} commands lie at the end or behind it and were not '
+                     f'carried out, the first at {run.commands[0][0] * 1e-9:g} s')
     if error or bag.recorder.error:
         print(f'error: {error or bag.recorder.error}', file=sys.stderr)
     return 2 if bag.recorder.error else status
@@ -130,16 +131,17 @@ class _Sink:
 
 def _values(assignments) -> dict:
     """Return {name: value} from texts NAME=VALUE; raise ValueError."""
+    from ..scene import load_yaml
+
     values = {}
     for text in assignments:
         name, equals, value = text.partition('=')
         if not equals or not name:
             raise ValueError(f"--set: '{text}' is not of the form NAME=VALUE")
         try:
-            values[name.strip()] = yaml.safe_load(value)
-        except yaml.YAMLError:
-            raise ValueError(f"--set: the value of '{text}' is neither a number nor a list "
-                             'such as [0,0,1]') from None
+            values[name.strip()] = load_yaml(value)
+        except ValueError as error:
+            raise ValueError(f'--set {text}: {error}') from None
     return values
 
 

@@ -25,21 +25,37 @@ _COIL_ALONG = np.linspace(0.1, 0.9, 65)
 _COIL_ANGLES = np.linspace(0.0, 8 * 2.0 * np.pi, 65)
 
 
+class _Markers:
+    """The markers of a scene as it is at some instant, and how they are filled in."""
+
+    def __init__(self, scene):
+        self.scene = scene
+        scale = _scale(scene)
+        parts = [part for i, body in enumerate(scene.bodies) for part in _body(body, i, scale)]
+        parts += [_anchor(i, scale) for i in range(len(scene.anchors))]
+        parts += [_spring(scene, spring, i, scale) for i, spring in enumerate(scene.springs)]
+        self._numbers = [numbers for _, numbers in parts]
+        self._pack = Template(MARKERS, {'markers': [marker for marker, _ in parts]}).pack
+
+    def encode(self, snapshot, stamp_ns):
+        """Return the message for a snapshot of the scene."""
+        values = []
+        for numbers in self._numbers:
+            values += stamp(stamp_ns)
+            values += numbers(snapshot)
+        return self._pack(*values)
+
+
 def marker_channel(scene):
     """Return the Channel 'markers' of a scene, at most 25 times a second."""
-    scale = _scale(scene)
-    parts = [part for i, body in enumerate(scene.bodies) for part in _body(body, i, scale)]
-    parts += [_anchor(i, scale) for i in range(len(scene.anchors))]
-    parts += [_spring(scene, spring, i, scale) for i, spring in enumerate(scene.springs)]
-    pack = Template(MARKERS, {'markers': [marker for marker, _ in parts]}).pack
+    markers = _Markers(scene)
 
     def encode_markers(snapshot, stamp_ns):
-        sec, nanosec = stamp(stamp_ns)
-        values = []
-        for _, numbers in parts:
-            values += (sec, nanosec)
-            values += numbers(snapshot)
-        return pack(*values)
+        nonlocal markers
+        if snapshot.scene is not markers.scene:
+            # A radius or an attachment point may have changed.
+            markers = _Markers(snapshot.scene)
+        return markers.encode(snapshot, stamp_ns)
 
     return Channel('markers', MARKERS, encode_markers, interval_ns=_INTERVAL_NS)
 

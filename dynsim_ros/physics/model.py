@@ -49,7 +49,7 @@ class SpringGroup(NamedTuple):
 
 
 class ModelAir(NamedTuple):
-    """Air: None for a drag that is absent; whirl None where no body can rotate."""
+    """Air: None for a drag that is absent, or that acts on no body."""
 
     linear_drag: float | None
     rotational_drag: float | None

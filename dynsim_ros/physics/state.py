@@ -8,6 +8,8 @@ velocities (3 per rigid body), then the work done so far by dampers, air, anchor
 A particle has no place among quaternions and angular velocities.
 """
 
+import math
+
 import numpy as np
 
 from .jit import formula
@@ -61,12 +63,15 @@ def normalise(bodies, rigid, y):
     """
     Divide every quaternion of y by its norm (sheet, 4.2).
 
-    Returns the largest distance of a norm from 1: what the normalisation has removed.
+    Returns the largest distance of a norm from 1: what the normalisation has removed. A norm a
+    thousand times too large or too small is no rounding: the quaternion becomes not a number.
     """
     largest = 0.0
     for i in range(quaternion_at(bodies), omega_at(bodies, rigid), 4):
         q = quaternion(y, i)
         n = quaternion_norm(q)
+        if not 1e-3 < n < 1e3:
+            n = math.nan
         largest = max(largest, abs(n - 1.0))
         put_quaternion(y, i, (q[0] / n, q[1] / n, q[2] / n, q[3] / n))
     return largest

@@ -15,7 +15,7 @@ from ..messages.qos import COMMAND
 from ..scene import SceneError
 from ..simulation import CommandError, MoveAnchor, PushBody
 
-# At most one warning of each kind in so many seconds.
+# At most one warning about refused commands in so many seconds.
 _THROTTLE = 1.0
 
 

@@ -46,8 +46,16 @@ def spinning(node: Node) -> Iterator[Callable[[float], None]]:
     """
     executor = SingleThreadedExecutor() if EventsExecutor is None else EventsExecutor()
     executor.add_node(node)
+
+    def serve(seconds):
+        try:
+            executor.spin_once(timeout_sec=seconds)
+        except (TypeError, ValueError) as error:
+            # rclpy itself fails on requests such as a parameter of a type that does not exist.
+            node.get_logger().error(f'a request was not understood, and dropped: {error}')
+
     try:
-        yield lambda seconds: executor.spin_once(timeout_sec=seconds)
+        yield serve
     finally:
         executor.remove_node(node)
         executor.shutdown()

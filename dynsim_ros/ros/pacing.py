@@ -9,6 +9,10 @@ import time
 SECOND = 1_000_000_000
 # Ticks that are late by more than this much real time are given up and counted as missed.
 LONGEST_LAG = SECOND // 5
+# The same where the clock is another's: that may tick slowly, but what it says has passed.
+LONGEST_STRIDE = 10 * SECOND
+# A timer is asked at least so often.
+LONGEST_PERIOD = SECOND
 # A timer is never asked for more calls a second than this; it then runs several ticks a call.
 SHORTEST_PERIOD = SECOND // 2000
 # How long ticks may run before commands get their turn.
@@ -20,12 +24,14 @@ class Pacer:
     Ties simulated time to a clock.
 
     factor: simulated seconds per second of the clock, 0 for as fast as possible; now: function
-    that returns the clock's time [ns]. missed: ticks given up; late: ticks made up for.
+    that returns the clock's time [ns]; longest_lag: what is made up for at most [ns of the
+    clock]. missed: ticks given up; late: ticks made up for.
     """
 
     def __init__(self, factor, now=time.monotonic_ns):
         self.factor = factor
         self.now = now
+        self.longest_lag = LONGEST_LAG
         self.missed = 0
         self.late = 0
         self.restart(0)
@@ -39,7 +45,7 @@ class Pacer:
         """Return how often to ask what is due [ns of the clock]."""
         if self.factor == 0.0:
             return SHORTEST_PERIOD
-        return max(round(tick_ns / self.factor), SHORTEST_PERIOD)
+        return round(min(max(tick_ns / self.factor, SHORTEST_PERIOD), LONGEST_PERIOD))
 
     def ticks_due(self, time_ns, tick_ns):
         """
@@ -62,7 +68,7 @@ class Pacer:
         elapsed = self.now() - self._clock_start
         due = int(self._time_start + elapsed * self.factor - time_ns) // tick_ns
         usual = max(round(self.period(tick_ns) * self.factor / tick_ns), 1)
-        most = max(int(LONGEST_LAG * self.factor) // tick_ns, usual)
+        most = max(int(self.longest_lag * self.factor) // tick_ns, usual)
         if due > most:
             self.missed += due - most
             self._time_start -= (due - most) * tick_ns

@@ -67,16 +67,12 @@ class Parameters:
             if name.startswith(_QOS) and name not in known:
                 raise SceneError(f"parameter '{name}' is not known; " + did_you_mean(name, known))
 
-    def refusal(self, parameters, simulator):
-        """Return why a group of new values cannot be set, in one line, or None; change nothing."""
-        try:
-            for parameter in parameters:
-                self._check_kind(parameter)
-            self._node_values(parameters)
-            simulator.changed_by(self.run_values(parameters))
-        except SceneError as error:
-            return str(error)
-        return None
+    def check(self, parameters, simulator):
+        """Raise SceneError if a group of new values cannot be set; change nothing."""
+        for parameter in parameters:
+            self._check_kind(parameter)
+        self._node_values(parameters)
+        simulator.changed_by(self.run_values(parameters))
 
     def run_values(self, parameters):
         """Return {name: value} of those that are quantities of the scene or settings."""
@@ -87,7 +83,7 @@ class Parameters:
         """Take over those that are the node's own."""
         self.own.update(self._node_values(parameters))
 
-    def restore(self, simulator):
+    def restored(self, simulator):
         """Return Parameters that say what the simulator now has."""
         values = self._values(simulator.scene, simulator.settings)
         return [Parameter(name, value=value) for name, value in values.items()

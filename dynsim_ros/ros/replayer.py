@@ -132,6 +132,9 @@ class Replayer:
         if self.start_ns > bag.end_ns:
             raise ReplayError(f'start offset {options.start_offset:g} s lies behind the end of '
                               f'{bag.path}, which is {length:.3f} s long')
+        if options.loop and self.end_ns == self.start_ns:
+            raise ReplayError('a loop over 0 s would never rest: give a longer '
+                              '--duration, or leave --loop out')
         for old, new in options.remap.items():
             if old not in bag.channels:
                 raise ReplayError(f"no topic '{old}' to remap in {bag.path}: {self._known()}")

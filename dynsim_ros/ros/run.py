@@ -34,6 +34,7 @@ class Run:
         self._resolve = topics.resolve
         self._log = node.get_logger()
         self._bag_error = None
+        self._unrecorded = []
 
     @property
     def stamp_ns(self):
@@ -76,20 +77,40 @@ class Run:
             self.bag.put(self.stamp_ns, messages)
             self._report_bag_error()
 
+    def begin(self, origin_ns):
+        """End the waiting: publish, and record what was commanded meanwhile."""
+        self.waiting = False
+        self.origin_ns = origin_ns
+        self.publish()
+        for command in self._unrecorded:
+            self._record_command(command)
+        self._unrecorded.clear()
+
     def command(self, command):
         """Carry out a command and record it; raise SceneError if it is refused."""
-        command = self.simulator.apply(command)
-        if self.bag is not None:
-            self.bag.put_command(self.stamp_ns, command)
+        self._record_command(self.simulator.apply(command))
 
     def set_values(self, values):
         """Carry out a change of quantities or settings that was checked before."""
         if values:
             self.command(SetValues(values))
 
+    def record_settings(self, values):
+        """Record a change of the node's own parameters."""
+        if values:
+            self._record_command(SetValues(values))
+
+    def _record_command(self, command):
+        if self.waiting:
+            # Its stamp is not known yet.
+            self._unrecorded.append(command)
+        elif self.bag is not None:
+            self.bag.put_command(self.stamp_ns, command)
+
     def reset(self):
         """Begin a new epoch with the initial scene; a bag ends and a new one begins."""
         was_recording = self.bag is not None
+        self._unrecorded.clear()
         self.stop_recording()
         self.simulator.reset()
         if was_recording:

@@ -40,8 +40,9 @@ class Services:
     def _pause(self, request):
         if not request.data and self._run.simulator.failure is not None:
             return False, self._failure()
+        resumes = self._run.paused and not request.data
         self._run.paused = request.data
-        if not request.data:
+        if resumes:
             self._resumed()
         return True, f'{"paused" if request.data else "running"} at {self._now()}'
 

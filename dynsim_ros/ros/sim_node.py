@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node: ties a run to ROS time, topics, commands, parameters and services."""
 
-import time
-
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
@@ -13,7 +11,7 @@ from .commands import Commands
 from .context import one_line
 from .diagnostics import Diagnostics
 from .message_types import message_class
-from .pacing import Pacer
+from .pacing import LONGEST_STRIDE, Pacer
 from .parameters import Parameters, refused
 from .qos import profile
 from .run import Run
@@ -53,20 +51,21 @@ class SimNode(Node):
             raise SceneError(f'a qos_overrides parameter is wrong: '
                              f'{one_line(error) or "its type"}') from None
         self.parameters.check_qos_overrides()
-        self._check_clock(self.get_parameter('use_sim_time').value,
-                          self.parameters.own['publish_clock'])
+        self._follows_clock = self.get_parameter('use_sim_time').value
+        self._check_clock({})
         self.run_services = Services(self, self.run, self._resume, self._was_reset)
         self.pacer = Pacer(self.parameters.own['real_time_factor'])
+        if self._follows_clock:
+            self.pacer.now, self.pacer.longest_lag = self._ros_now, LONGEST_STRIDE
         self.diagnostics = Diagnostics(self, self.run, self.pacer)
         self._epoch_publisher = self.create_publisher(
             message_class(EPOCH.type_name), f'~/{EPOCH.topic}', profile(EPOCH.qos))
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._timer = None
-        self._follows_clock = False
         self._clock_seen = 0
         self._restoring = False
         self.add_post_set_parameters_callback(self._parameters_were_set)
-        self.run.waiting = self.get_parameter('use_sim_time').value
+        self.run.waiting = self._follows_clock
         if self.parameters.own['record.enable']:
             self.run.start_recording()
 
@@ -79,34 +78,36 @@ class SimNode(Node):
 
     def end(self):
         """Stop ticking and finish the bag."""
+        self.run.stop_recording()
         if self._timer is not None:
             self._timer.cancel()
-        self.run.stop_recording()
 
     def set_parameters_atomically(self, parameter_list):
         """Set a group of parameters, all of them or none, with our reasons where refused."""
-        parameters = [self.parameters.converted(parameter) for parameter in parameter_list]
-        values = {parameter.name: parameter.value for parameter in parameters}
-        reason = self.parameters.refusal(parameters, self.run.simulator)
-        if reason is None and not self._restoring:
-            try:
-                self._check_clock(
-                    values.get('use_sim_time', self.get_parameter('use_sim_time').value),
-                    values.get('publish_clock', self.parameters.own['publish_clock']))
-            except SceneError as error:
-                reason = str(error)
         if self._restoring:
-            return super().set_parameters_atomically(parameters)
-        if reason is not None:
-            return refused(reason)
+            return super().set_parameters_atomically(parameter_list)
+        parameters = [self.parameters.converted(parameter) for parameter in parameter_list]
+        try:
+            self.parameters.check(parameters, self.run.simulator)
+            self._check_clock({parameter.name: parameter.value for parameter in parameters})
+        except SceneError as error:
+            return refused(str(error))
         return super().set_parameters_atomically(
             self.parameters.canonical(parameters, self.run.simulator))
 
-    @staticmethod
-    def _check_clock(follows, publishes):
-        if follows and publishes:
+    def _check_clock(self, values):
+        """Raise SceneError if new values of parameters do not go with the clock."""
+        follows = values.get('use_sim_time', self._follows_clock)
+        if follows != self._follows_clock:
+            raise SceneError('use_sim_time: the clock of a run cannot be changed; give it at the '
+                             'start')
+        own = {**self.parameters.own, **values}
+        if follows and own['publish_clock']:
             raise SceneError('publish_clock: the node cannot follow /clock (use_sim_time) and '
                              'publish it; set one of the two to false')
+        if follows and own['real_time_factor'] == 0.0:
+            raise SceneError('real_time_factor: 0 (as fast as possible) does not go with '
+                             'following /clock (use_sim_time); set it above 0')
 
     def _parameters_were_set(self, parameters):
         if self._restoring:
@@ -114,21 +115,23 @@ class SimNode(Node):
         self.parameters.accept(parameters)
         self.run.set_values(self.parameters.run_values(parameters))
         names = {parameter.name for parameter in parameters}
-        if names & {'rate', 'real_time_factor', 'use_sim_time'}:
+        self.run.record_settings({name: self.parameters.own[name]
+                                  for name in names if name in self.parameters.own})
+        if 'integrator' in names:
+            # It may have to be compiled: that is no lag to be made up for.
+            self.run.simulator.prepare()
+        if names & {'integrator', 'rate', 'real_time_factor'}:
             self._schedule()
 
     def _schedule(self):
         """Set the timer to the rate, and let simulated time go on from now."""
         self.pacer.factor = self.parameters.own['real_time_factor']
-        follows = self.get_parameter('use_sim_time').value
-        if follows != self._follows_clock:
-            self._follows_clock, self._clock_seen = follows, 0
-        self.pacer.now = self._ros_now if self._follows_clock else time.monotonic_ns
         self.pacer.restart(self.run.simulator.time_ns)
-        if self._timer is not None:
-            self.destroy_timer(self._timer)
+        before = self._timer
         period = self.pacer.period(self.run.simulator.settings.tick_ns) / 1e9
         self._timer = self.create_timer(period, self._advance, clock=self._steady)
+        if before is not None:
+            self.destroy_timer(before)
 
     def _ros_now(self):
         return self.get_clock().now().nanoseconds
@@ -162,9 +165,7 @@ class SimNode(Node):
         time_ns = self.run.simulator.time_ns
         self.pacer.restart(time_ns)
         if self.run.waiting:
-            self.run.waiting = False
-            self.run.origin_ns = self._clock_seen - time_ns
-            self.run.publish()
+            self.run.begin(self._clock_seen - time_ns)
 
     def _resume(self):
         self.pacer.restart(self.run.simulator.time_ns)
@@ -177,8 +178,7 @@ class SimNode(Node):
             self.run.waiting = self.run.origin_ns == 0
         self._restoring = True
         try:
-            for parameter in self.parameters.restore(self.run.simulator):
-                self.set_parameters_atomically([parameter])
+            self.set_parameters_atomically(self.parameters.restored(self.run.simulator))
         finally:
             self._restoring = False
         self.diagnostics.begin()

@@ -108,8 +108,9 @@ class RigidBody(Rigid):
             if any(value[i][j] != value[j][i] for i, j in ((0, 1), (0, 2), (1, 2))):
                 raise SceneError(f'{self.name}.inertia: the matrix {value} is not symmetric')
             moments = _symmetric_eigenvalues(value)
-        # A body of positive mass everywhere obeys both; rounding is given its due.
-        if moments[0] <= 0.0 or moments[0] + moments[1] < moments[2] * (1.0 - 1e-9):
+        # A body of positive mass everywhere obeys both; rounding is given its due. A matrix of
+        # a thin rod, turned, has a moment of about zero, and cannot be inverted.
+        if moments[0] <= 1e-12 * moments[2] or moments[0] + moments[1] < moments[2] * (1.0 - 1e-9):
             shown = ', '.join(f'{m:.6g}' for m in moments)
             raise SceneError(
                 f'{self.name}.inertia: principal moments {shown} kg m^2 belong to no body; each '

@@ -9,8 +9,10 @@ from .errors import SceneError, shown
 _NAME = re.compile(r'[A-Za-z](_?[A-Za-z0-9])*')
 
 # Names of parameter groups that stand beside the scene's own.
-RESERVED = frozenset({'air', 'down', 'gravity', 'integrator', 'qos_overrides', 'rate', 'record',
-                      'scene', 'step'})
+RESERVED = frozenset({
+    'air', 'anchor_interpolation', 'down', 'duration', 'gravity', 'integrator', 'publish_clock',
+    'qos_overrides', 'rate', 'real_time_factor', 'record', 'scene', 'step', 'use_sim_time',
+    'wrench_timeout'})
 
 
 def check_name(name):

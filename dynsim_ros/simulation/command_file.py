@@ -12,8 +12,9 @@ A command takes effect at the first tick at or after its time.
 
 from pathlib import Path
 
+from .changes import changed
 from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
-from .settings import SECOND
+from .settings import SECOND, Settings
 from ..scene import did_you_mean, load_yaml, Quantity, SceneError, shown
 
 _TIME = Quantity('s', 'time of a command', minimum=0.0, maximum=1e9)
@@ -59,6 +60,7 @@ def _command(entry, scene):
         zero = (0.0, 0.0, 0.0)
         command = PushBody(entry['body'], entry.get('force', zero), entry.get('torque', zero))
     elif isinstance(entry['set'], dict):
+        changed(scene, Settings(), entry['set'])
         command = SetValues(entry['set'])
     else:
         raise CommandError(f'set: {shown(entry["set"])} is not a mapping of names to values')

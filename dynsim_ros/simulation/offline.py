@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run whose commands are known beforehand; no clock, no ROS."""
 
-from .settings import SECOND, SETTING_NAMES, Settings
+from .changes import changed
+from .settings import SECOND, Settings
 from .simulator import Simulator
-from ..scene import did_you_mean, scene_quantities, SceneError, with_values
 
 
 def simulator_with(scene, values):
@@ -13,14 +13,7 @@ def simulator_with(scene, values):
 
     values: {name: value}, initial conditions included. Raises SceneError.
     """
-    known = [*SETTING_NAMES, *scene_quantities(scene)]
-    for name in values:
-        if name not in known:
-            raise SceneError(f"'{name}' is no quantity of this scene and no setting; "
-                             + did_you_mean(name, known))
-    settings = {name: value for name, value in values.items() if name in SETTING_NAMES}
-    changes = {name: value for name, value in values.items() if name not in SETTING_NAMES}
-    return Simulator(with_values(scene, changes), Settings(**settings))
+    return Simulator(*changed(scene, Settings(), values, at_start=True))
 
 
 class OfflineRun:
@@ -29,11 +22,12 @@ class OfflineRun:
 
     commands: [(time_ns, command)] in order of time; sink: has snapshot(snapshot, tick_ns), called
     at every tick, and command(time_ns, command), called for every command that took effect.
+    What remains in commands after a run is later than its end.
     """
 
     def __init__(self, simulator, commands, sink):
         self._simulator = simulator
-        self._commands = list(commands)
+        self.commands = list(commands)
         self._sink = sink
 
     def run(self, duration):
@@ -49,6 +43,6 @@ class OfflineRun:
     def _command(self):
         """Carry out the commands whose time has come."""
         simulator = self._simulator
-        while self._commands and self._commands[0][0] <= simulator.time_ns:
-            command = simulator.apply(self._commands.pop(0)[1])
+        while self.commands and self.commands[0][0] <= simulator.time_ns:
+            command = simulator.apply(self.commands.pop(0)[1])
             self._sink.command(simulator.time_ns, command)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .anchors import Anchors
+from .changes import changed
 from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
 from .layout import Layout
 from .settings import SECOND, SETTING_NAMES, Settings
@@ -16,7 +17,7 @@ from ..integrators import method_named, SCRATCH_ROWS
 from ..physics.energies import energies
 from ..physics.model import build_model
 from ..physics.state import initial_state, WORKS
-from ..scene import scene_quantities, SceneError, with_values
+from ..scene import get_value
 
 
 # Of a state with larger numbers (SI) than this, energies and forces might not be finite.
@@ -75,7 +76,7 @@ class Simulator:
 
     def snapshot(self):
         """Return the Snapshot of the present instant."""
-        return Snapshot(self.time_ns, self.tick, self.epoch, self.layout, self._model,
+        return Snapshot(self.time_ns, self.tick, self.epoch, self.scene, self.layout, self._model,
                         self._state.copy(), self._anchors.motion_at(self.time_ns),
                         self._pushes.copy(), self._reference_energy)
 
@@ -115,7 +116,8 @@ class Simulator:
         """
         Carry out a command at the present instant, whole; what follows is under it.
 
-        Raises CommandError or SceneError, and has then changed nothing.
+        Returns the command with its values as they are in force. Raises CommandError or
+        SceneError, and has then changed nothing.
         """
         command = checked(command, self.scene)
         if isinstance(command, MoveAnchor):
@@ -123,26 +125,14 @@ class Simulator:
         elif isinstance(command, PushBody):
             self._push(command)
         elif isinstance(command, SetValues):
-            self._set_values(command.values)
+            return self._set_values(command.values)
         else:
             raise CommandError(f'{command!r} is no command')
         return command
 
     def changed_by(self, values):
-        """
-        Return (scene, settings) as they would be after SetValues(values); change nothing.
-
-        Raises SceneError for an unknown name, a wrong value, or an initial condition.
-        """
-        quantities = scene_quantities(self.scene)
-        for name in values:
-            if name in quantities and quantities[name].initial:
-                raise SceneError(f'{name}: is an initial condition, fixed once the run has begun; '
-                                 'give it at the start')
-        settings = {name: value for name, value in values.items() if name in SETTING_NAMES}
-        scene = {name: value for name, value in values.items() if name not in SETTING_NAMES}
-        return (with_values(self.scene, scene) if scene else self.scene,
-                replace(self.settings, **settings) if settings else self.settings)
+        """Return (scene, settings) as they would be after SetValues(values): see changed."""
+        return changed(self.scene, self.settings, values)
 
     def _next_change(self):
         changes = [*self._push_ends.values()]
@@ -176,8 +166,9 @@ class Simulator:
     def _describe_failure(self, state, end):
         layout = self.layout
         where = next((body for body in layout.bodies
-                      if not _is_finite(state[layout.position(body)])
-                      or not _is_finite(state[layout.velocity(body)])), layout.bodies[0])
+                      for part in (layout.position, layout.velocity, layout.orientation,
+                                   layout.angular_velocity)
+                      if part(body) and not _is_finite(state[part(body)])), layout.bodies[0])
         return (f"the motion of '{where}' is no longer finite between {self.time:.9g} s and "
                 f'{end / SECOND:.9g} s of simulated time; the state of {self.time:.9g} s is kept; '
                 f'give a shorter step than {self.settings.step:g} s or smaller stiffness, damping '
@@ -224,14 +215,18 @@ class Simulator:
         scene, settings = self.changed_by(values)
         self._begin_here()
         before = self._energy()
-        self.scene, self.settings = scene, settings
-        self._build()
         for i, anchor in enumerate(scene.anchors):
             if f'{anchor.name}.position' in values:
                 self._anchors.place(i, anchor.position)
-            if f'{anchor.name}.velocity' in values:
+            if {f'{anchor.name}.position', f'{anchor.name}.velocity'} & set(values):
                 self._anchors.set_velocity(i, anchor.velocity)
-        self._reference_energy += self._energy() - before
+        moved = self._energy()
+        self._add_anchor_work(moved - before)
+        self.scene, self.settings = scene, settings
+        self._build()
+        self._reference_energy += self._energy() - moved
+        return SetValues({name: getattr(settings, name) if name in SETTING_NAMES
+                          else get_value(scene, name) for name in values})
 
     def _energy(self):
         kinetic, gravitational, spring = energies(

@@ -12,6 +12,7 @@ from ..physics.energies import energies
 from ..physics.model import Model
 from ..physics.motion import wrenches
 from ..physics.state import WORKS
+from ..scene import Scene
 
 # Rows of the array that the kernel for wrenches fills.
 WRENCH_KINDS = ('spring', 'damper', 'air', 'gravity')
@@ -44,13 +45,15 @@ class Snapshot:
     One instant of a run; arrays in world axes, SI units.
 
     time_ns: simulated time since the start of the epoch; tick: number of the tick; epoch: how
-    often the run was reset; state: see physics.state; anchors: (n, 6) position and velocity;
-    pushes: commanded wrenches, laid out as the state; reference_energy: [J], see Energy.
+    often the run was reset; scene: as it is then; state: see physics.state; anchors: (n, 6)
+    position and velocity; pushes: commanded wrenches, laid out as the state; reference_energy:
+    [J], see Energy.
     """
 
     time_ns: int
     tick: int
     epoch: int
+    scene: Scene
     layout: Layout
     model: Model
     state: np.ndarray

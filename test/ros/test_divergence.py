@@ -24,7 +24,7 @@ def client(node, connect):
     client = connect(node)
     client.listen({**SPHERE, '/diagnostics': DIAGNOSTICS})
     client.more('sphere/pose', 5)
-    assert client.set_group({'spring.stiffness': 1e12, 'step': 0.01}).successful
+    assert client.set_group({'spring.stiffness': 3e4, 'step': 0.01}).successful
     client.wait(lambda: REASON in node.output)
     client.drain()
     return client
@@ -43,7 +43,7 @@ def numbers(client):
 
 def test_all_that_went_out_is_finite(client):
     assert np.isfinite(numbers(client)).all()
-    assert np.abs(numbers(client)).max() > 1e6, 'it did not diverge'
+    assert np.abs(numbers(client)).max() > 1e3, 'it did not diverge'
 
 
 def test_the_log_says_it_once(node, client):

@@ -280,8 +280,8 @@ def test_what_does_not_fit_the_bag(bag, arguments, part):
 
 
 @pytest.mark.parametrize(('arguments', 'part'), [
-    (['--rate', '0'], '0 is not above 0'), (['--rate', 'nan'], "'nan' is not a number"),
-    (['--clock', '-1'], '-1 is not above 0'), (['--duration', '-1'], '-1 is below 0'),
+    (['--rate', '0'], '0 is out of range: 1e-06 to 1e+06'), (['--rate', 'nan'], "'nan' is not a number"),
+    (['--clock', '-1'], '-1 is out of range: 1e-06 to 1e+06'), (['--duration', '-1'], '-1 s is out of range: 0 to 1e+09 s'),
     (['--remap', 'a'], "'a' is not of the form OLD:=NEW"), ([], 'required: FILE')])
 def test_wrong_options(capsys, arguments, part):
     from dynsim_ros.cli.replay import main

@@ -28,7 +28,8 @@ def test_a_group_takes_effect_at_once_and_leaves_the_motion_where_it_is():
 
 
 @pytest.mark.parametrize('wrong, words', [
-    ({'sphere.mas': 1}, "'sphere.mas' is no quantity of this scene; did you mean 'sphere.mass'?"),
+    ({'sphere.mas': 1}, "'sphere.mas' is no quantity of this scene and no setting; did you mean "
+                        "'sphere.mass'?"),
     ({'sphere.mass': -1}, r'sphere.mass: -1 kg is out of range: 1e-09 to 1e\+06 kg'),
     ({'sphere.mass': float('nan')}, 'sphere.mass: nan is not finite; give a number in kg'),
     ({'sphere.mass': None}, 'sphere.mass: None is not a number'),
