@@ -96,7 +96,7 @@ def test_bags_begin_where_the_clock_does(heard, follower):
 def test_publishing_it_too_is_refused(heard):
     client = heard[2]
     (result,) = client.configure({'publish_clock': True})
-    assert not result.successful and 'give it at the start' in result.reason
+    assert not result.successful and 'cannot follow /clock' in result.reason
 
 
 @pytest.fixture(scope='module')

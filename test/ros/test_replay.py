@@ -280,8 +280,11 @@ def test_what_does_not_fit_the_bag(bag, arguments, part):
 
 
 @pytest.mark.parametrize(('arguments', 'part'), [
-    (['--rate', '0'], '0 is out of range: 1e-06 to 1e+06'), (['--rate', 'nan'], "'nan' is not a number"),
-    (['--clock', '-1'], '-1 is out of range: 1e-06 to 1e+06'), (['--duration', '-1'], '-1 s is out of range: 0 to 1e+09 s'),
+    (['--rate', '0'], '0 is out of range: 1e-06 to 1e+06'),
+    (['--rate', 'nan'], "'nan' is not a number"), (['--rate', '1e308'], '1e308 is out of range'),
+    (['--clock', '-1'], '-1 is out of range: 1e-06 to 1e+06'),
+    (['--duration', '-1'], '-1 s is out of range: 0 to 1e+09 s'),
+    (['--start-offset', '1e300'], '1e300 s is out of range'),
     (['--remap', 'a'], "'a' is not of the form OLD:=NEW"), ([], 'required: FILE')])
 def test_wrong_options(capsys, arguments, part):
     from dynsim_ros.cli.replay import main
