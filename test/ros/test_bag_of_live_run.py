@@ -4,6 +4,7 @@
 
 import json
 
+from dynsim_ros.cli.simulate import main as simulate
 from dynsim_ros.scene import load_scene
 from geometry_msgs.msg import PointStamped, WrenchStamped
 from mcap.reader import make_reader
@@ -210,3 +211,20 @@ def test_the_scene_and_the_parameters_are_inside(run, tmp_path):
     assert run.metadata['dynsim_ros']['node'] == '/dynsim'
     assert run.metadata['dynsim_ros']['epoch'] == '0'
     assert run.metadata['dynsim_ros']['version'].count('.') == 2
+
+
+def test_the_offline_run_writes_the_same(start, tmp_path):
+    """Let both run from the start to the same instant: equal bytes on every topic of the state."""
+    node = start('-p', 'record.enable:=true', '-p', 'duration:=1.0', '-p', 'sphere.mass:=1.3')
+    node.wait()
+    offline = tmp_path / 'offline.mcap'
+    assert simulate(['sphere_on_spring', '-d', '1', '-o', str(offline), '-q', '--set',
+                     'sphere.mass=1.3']) == 0
+
+    def content(path):
+        with open(path, 'rb') as stream:
+            return {(channel.topic, message.log_time): message.data
+                    for _, channel, message in make_reader(stream).iter_messages()
+                    if channel.topic != '/diagnostics'}
+
+    assert content(node.bags[0]) == content(offline)

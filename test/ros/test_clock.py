@@ -51,6 +51,8 @@ def heard(follower, connect):
     client.listen({'sphere/pose': POSE, '/diagnostics': DIAGNOSTICS})
     (array, *_) = client.more('/diagnostics')
     waiting = array.status[0].message, len(client.heard['sphere/pose'])
+    # what is commanded before the clock begins is part of the run all the same
+    assert client.configure({'gravity': 5.0})[0].successful
     clock = Time0(client)
     spans = []
     # it begins, is set back within what has passed, and to before it began
@@ -91,6 +93,10 @@ def test_bags_begin_where_the_clock_does(heard, follower):
     assert [begin for begin, _ in found] == [
         100 * SECOND, 100 * SECOND + 20 * TICK, 50 * SECOND]
     assert all(end - begin >= 50 * TICK for begin, end in found)
+    with open(follower.bags[0], 'rb') as stream:
+        ((_, _, change),) = make_reader(stream).iter_messages(
+            topics=['/follower/dynsim/parameter_command'])
+    assert change.log_time == 100 * SECOND and b'gravity' in change.data
 
 
 def test_publishing_it_too_is_refused(heard):

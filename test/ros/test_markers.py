@@ -70,3 +70,13 @@ def test_the_anchor_and_the_spring(drawn):
         (0.0, 0.0, RADIUS))
     np.testing.assert_allclose(xyz(spring.points[0]), xyz(hand.pose.position), atol=1e-9)
     np.testing.assert_allclose(xyz(spring.points[-1]), edge, atol=1e-9)
+
+
+def test_they_follow_what_is_set(start, connect):
+    client = connect(start('-r', '__ns:=/bigger', name='/bigger/dynsim'))
+    client.listen({'markers': MARKERS})
+    assert client.configure({'sphere.radius': 0.5})[0].successful
+    client.more('markers', 3)
+    (sphere,) = [marker for marker in client.last('markers').markers
+                 if marker.type == Marker.SPHERE]
+    assert list(xyz(sphere.scale)) == [1.0] * 3

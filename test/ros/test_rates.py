@@ -125,3 +125,10 @@ def test_a_long_pause_is_not_made_up_for(node, client):
     ticks = int(after['tick']) - int(before['tick'])
     missed = int(after['missed ticks']) - int(before['missed ticks'])
     assert ticks + missed < 60
+
+
+def test_hardly_any_time_at_all(node, client):
+    assert client.set_group({'rate': 100.0, 'real_time_factor': 1e-300}).successful
+    client.pause(False)
+    assert client.set_group({'real_time_factor': 1.0}).successful
+    client.more('sphere/pose', 5)

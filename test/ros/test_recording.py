@@ -5,6 +5,8 @@
 import resource
 
 from dynsim_ros.bag.reader import open_bag
+from dynsim_ros.messages.cdr import decode
+from dynsim_ros.messages.commands import PARAMETER
 from mcap.reader import make_reader
 import pytest
 from scene_topics import DIAGNOSTICS, POSE
@@ -51,6 +53,19 @@ def test_stop_and_start_name_the_file(node, client):
     started = client.record(True)
     assert started.success
     assert started.message != name and (node.folder / started.message).is_file()
+
+
+def test_changes_of_other_parameters_are_recorded(node, client):
+    client.record(False)
+    name = client.record(True).message
+    assert client.configure({'real_time_factor': 0.5})[0].successful
+    assert client.configure({'real_time_factor': 1.0})[0].successful
+    client.record(False)
+    with open(node.folder / name, 'rb') as stream:
+        found = [decode(PARAMETER, message.data) for _, _, message in make_reader(
+            stream).iter_messages(topics=['/dynsim/parameter_command'])]
+    assert [(change['name'], change['value']['double_value']) for change in found] == [
+        ('real_time_factor', 0.5), ('real_time_factor', 1.0)]
 
 
 def test_twice_is_refused_and_changes_nothing(node, client):

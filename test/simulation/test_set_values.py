@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quantities change while running: as a group, whole or not at all."""
 
-from dynsim_ros.scene import Box, load_scene, Scene, SceneError
+from dynsim_ros.scene import Box, load_scene, Scene, SceneError, with_values
 from dynsim_ros.simulation import SetValues, Simulator
 import numpy as np
 import pytest
@@ -90,3 +90,22 @@ def test_a_cube_that_becomes_a_box_keeps_the_states_of_all_bodies():
         unchanged = np.array_equal(simulator.snapshot().angular_velocity('first'), omega)
         assert unchanged is is_round
         before = [state_of(simulator, body).tobytes() for body in ('first', 'second')]
+
+
+def test_values_come_back_as_they_are_in_force():
+    simulator = Simulator(load_scene('sphere_on_spring'))
+    command = simulator.apply(SetValues({
+        'spring.stiffness': '2e2', 'down': (0, 0, -2), 'rate': 50, 'integrator': 'rk4'}))
+    assert command == SetValues({
+        'spring.stiffness': 200.0, 'down': [0.0, 0.0, -1.0], 'rate': 50.0, 'integrator': 'rk4'})
+
+
+def test_an_anchor_that_is_put_elsewhere_goes_on_and_does_work():
+    scene = with_values(load_scene('particle_on_spring'), {'hand.velocity': (0.5, 0, 0)})
+    simulator = Simulator(scene, step=1e-4)
+    simulator.run(0.1)
+    simulator.apply(SetValues({'hand.position': (0, 0, 2.5)}))
+    np.testing.assert_allclose(simulator.snapshot().anchors, [[0, 0, 2.5, 0.5, 0, 0]])
+    energy = simulator.run(0.1).snapshots[-1].energy
+    assert energy.work['anchor'] > 1.0
+    np.testing.assert_allclose(energy.imbalance, 0.0, atol=1e-9)
