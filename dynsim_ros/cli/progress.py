@@ -8,6 +8,8 @@ import shutil
 import sys
 from typing import TextIO
 
+from .terminal import write
+
 
 class Progress:
     """
@@ -33,19 +35,16 @@ class Progress:
         bar = max(min(width - len(text) - 2, 40), 0)
         full = round(share * bar)
         line = f'[{"#" * full}{"." * (bar - full)}]{text}' if bar else text.strip()
-        self._stream.write(f'\r\x1b[K{line[:width]}')
-        self._stream.flush()
+        write(self._stream, f'\r\x1b[K{line[:width]}')
 
     def say(self, line: str):
         """Write a line that stays, unless quiet."""
         if self._quiet:
             return
         self.clear()
-        self._stream.write(f'{line}\n')
-        self._stream.flush()
+        write(self._stream, f'{line}\n')
 
     def clear(self):
         """Take the bar away, before anything else is written."""
         if self._drawing:
-            self._stream.write('\r\x1b[K')
-            self._stream.flush()
+            write(self._stream, '\r\x1b[K')

@@ -7,11 +7,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 import math
-import signal
 import sys
 
 from .progress import Progress
 from .ros_arguments import split
+from .signals import Signals
 
 _DESCRIPTION = """\
 Publish the messages of a bag on the topics they were recorded from, with the recorded timing.
@@ -21,7 +21,7 @@ folder of a rosbag2 recording. Of a file that was cut off, what can be read is p
 
 _EPILOG = """\
 services while playing (std_srvs/srv/Trigger):
-  ~/pause, ~/resume    hold the time of the bag, and let it go on (/dynsim_replay/pause …)
+  ~/pause, ~/resume    hold the time of the bag, and let it go on (/dynsim_replay/pause ...)
 
 examples:
   replay runs/run.mcap --rate 0.5 --clock
@@ -31,23 +31,25 @@ examples:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Replay a bag; return 0, also when stopped by a signal, or 2 with an error on stderr."""
-    own, ros_args = split(sys.argv[1:] if args is None else args)
-    options = _parser().parse_args(own)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    signals = Signals()
     try:
-        return _replay(options, ros_args)
+        own, ros_args = split(sys.argv[1:] if args is None else args)
+        return _replay(_parser().parse_args(own), ros_args, signals)
     except KeyboardInterrupt:
         return 0
     except ImportError as error:
         print(f'error: {error}: install or source ROS 2 Jazzy', file=sys.stderr)
     except ValueError as error:
         print(f'error: {error}', file=sys.stderr)
+    finally:
+        if args is None:
+            signals.ignore()
     return 2
 
 
-def _replay(options: argparse.Namespace, ros_args: Sequence[str]) -> int:
+def _replay(options: argparse.Namespace, ros_args: Sequence[str], signals: Signals) -> int:
     """Open the bag, start the node and play."""
-    # Imported here so that --help needs no ROS and a signal during the import is no traceback.
+    # Imported here so that --help needs no ROS.
     from ..bag.reader import open_bag
     from ..ros.replayer import Replayer, ReplayOptions
     from ..ros.serving import serving
@@ -64,15 +66,15 @@ def _replay(options: argparse.Namespace, ros_args: Sequence[str]) -> int:
                 wait_acked=options.wait_acked))
             for warning in player.warnings:
                 _warn(warning)
-            _play(player, bag, options.quiet)
+            _play(player, bag, options.quiet, signals)
         if bag.problem != known_problem:
             _warn(bag.problem)
     return 0
 
 
-def _play(player, bag, quiet: bool):
+def _play(player, bag, quiet: bool, signals: Signals):
     """Play, showing how far it is, until the end or a signal."""
-    stop = _StopOnSignal()
+    signals.hold()
     progress = Progress(player.duration, quiet=quiet)
     progress.say(f'{bag.path}: {len(player.topics)} topics, playing {player.duration:.3f} s'
                  + (', paused: call the service ~/resume to start' if player.paused else ''))
@@ -81,26 +83,8 @@ def _play(player, bag, quiet: bool):
         state = ', paused' if player.paused else ''
         progress.show(seconds, f'{player.published} messages{state}')
 
-    finished = player.run(stop.requested, report)
+    finished = player.run(signals.is_requested, report)
     progress.say(('replayed' if finished else 'stopped after') + f' {player.published} messages')
-
-
-class _StopOnSignal:
-    """Notes SIGINT and SIGTERM instead of raising, so that what is being sent is finished."""
-
-    def __init__(self):
-        """Take over both signals."""
-        self._requested = False
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._note)
-
-    def requested(self) -> bool:
-        """Tell whether a signal has come."""
-        return self._requested
-
-    def _note(self, *_):
-        """Handle a signal."""
-        self._requested = True
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 
 from .ros_arguments import split
+from .signals import Signals
 from .status_line import StatusLine
 
 _DESCRIPTION = """\
@@ -36,22 +36,26 @@ examples:
 
 def main(args=None) -> int:
     """Run the node; return 0, also when stopped by a signal, or 2 with an error on stderr."""
-    own, ros_args = split(sys.argv[1:] if args is None else args)
-    options = _parser().parse_args(own)
-    stop = _StopOnSignal()
+    signals = Signals()
     # The recorder's thread gives the interpreter back sooner, so that ticks are less late.
     sys.setswitchinterval(0.0005)
     try:
-        return _simulate(options, ros_args, stop)
+        own, ros_args = split(sys.argv[1:] if args is None else args)
+        return _simulate(_parser(own).parse_args(own), ros_args, signals)
+    except KeyboardInterrupt:
+        return 0
     except ImportError as error:
         print(f'error: {error}: install or source ROS 2 Jazzy', file=sys.stderr)
     except ValueError as error:
         print(f'error: {error}', file=sys.stderr)
+    finally:
+        if args is None:
+            signals.ignore()
     return 2
 
 
-def _simulate(options, ros_args, stop) -> int:
-    # Imported here so that --help needs no ROS and a signal during the import is no traceback.
+def _simulate(options, ros_args, signals) -> int:
+    # Imported here so that --help needs no ROS.
     from ..ros.context import ros_context, spinning
     from ..ros.sim_node import SimNode
 
@@ -59,10 +63,12 @@ def _simulate(options, ros_args, stop) -> int:
     with ros_context('sim_node', ros_args):
         line.show('starting: loading the kernels (compiling them takes a while the first time)')
         node = SimNode()
+        signals.hold()
+        line.end()
         try:
             with spinning(node) as spin_some:
                 node.begin()
-                _spin_until_end(node, spin_some, stop, line)
+                _spin_until_end(node, spin_some, signals, line)
         finally:
             line.end()
             node.end()
@@ -70,8 +76,8 @@ def _simulate(options, ros_args, stop) -> int:
     return 0
 
 
-def _spin_until_end(node, spin_some, stop, line):
-    while not (stop.requested or node.run.finished):
+def _spin_until_end(node, spin_some, signals, line):
+    while not (signals.requested or node.run.finished):
         spin_some(0.1)
         if line.is_due():
             line.show(_status(node))
@@ -85,28 +91,21 @@ def _status(node) -> str:
     x, y, z = snapshot.position(body)
     state = 'diverged' if simulator.failure else 'paused' if node.run.paused else 'running'
     recorded = f'{bag.recorder.messages} recorded' if bag else 'not recording'
-    return (f'{state}  t {simulator.time:9.3f} s  x{node.diagnostics.real_time_factor:5.2f}  '
+    factor = node.diagnostics.real_time_factor
+    pace = '    -' if factor is None else f'{factor:5.2f}'
+    return (f'{state}  t {simulator.time:9.3f} s  x{pace}  '
             f'{body} ({x:+.4f}, {y:+.4f}, {z:+.4f}) m  E {snapshot.energy.total:.5f} J  '
             f'{recorded}')
 
 
-class _StopOnSignal:
-    """Notes SIGINT and SIGTERM, so that what is being done is finished."""
-
-    def __init__(self):
-        self.requested = False
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._note)
-
-    def _note(self, *_):
-        self.requested = True
-
-
-def _parser() -> argparse.ArgumentParser:
+def _parser(own) -> argparse.ArgumentParser:
     """Return the parser of the command line, without the part that belongs to ROS."""
     parser = argparse.ArgumentParser(
-        'sim_node', description=_DESCRIPTION, epilog=_epilog(), allow_abbrev=False,
+        'sim_node', description=_DESCRIPTION, allow_abbrev=False,
         formatter_class=argparse.RawDescriptionHelpFormatter)
+    if {'-h', '--help'} & set(own):
+        # Takes a while to gather.
+        parser.epilog = _epilog()
     parser.add_argument('--status', action='store_true',
                         help='show a status line also where the output is no terminal '
                              '(default: on a terminal only)')

@@ -5,11 +5,11 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 import time
 
 from .progress import Progress
+from .signals import Signals
 
 _DESCRIPTION = """\
 Simulate a scene into a bag, without any ROS process and as fast as the machine can.
@@ -42,21 +42,24 @@ def main(args=None) -> int:
 
     The bag is finished in any case.
     """
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    options = _parser().parse_args(args)
+    signals = Signals()
     try:
-        return _simulate(options)
+        own = sys.argv[1:] if args is None else args
+        return _simulate(_parser(own).parse_args(own), signals)
     except (ValueError, ImportError) as error:
         print(f'error: {error}', file=sys.stderr)
     except OSError as error:
-        print(f'error: {error.filename or options.output}: {error.strerror}; choose another '
-              '--output', file=sys.stderr)
+        print(f'error: {error.filename or "the bag"}: {error.strerror}; choose another --output',
+              file=sys.stderr)
     except KeyboardInterrupt:
         return 130
+    finally:
+        if args is None:
+            signals.ignore()
     return 2
 
 
-def _simulate(options) -> int:
+def _simulate(options, signals) -> int:
     # Imported here so that --help is quick.
     from ..bag.run_bag import new_path, RunBag
     from ..messages.scene_channels import scene_channels
@@ -72,11 +75,12 @@ def _simulate(options) -> int:
                  f'{simulator.settings.integrator} at {simulator.settings.rate:g} Hz')
     simulator.prepare()
     channels = scene_channels(simulator.scene, simulator.layout)
+    signals.hold()
     bag = RunBag(path, simulator, channels, compression=options.compression, wait=True)
     run = OfflineRun(simulator, commands, _Sink(bag, channels, progress))
     started = time.monotonic()
     try:
-        status, error = _run(run, options.duration)
+        status, error = _run(run, options.duration, signals)
     finally:
         bag.close()
         progress.clear()
@@ -92,17 +96,15 @@ def _simulate(options) -> int:
     return 2 if bag.recorder.error else status
 
 
-def _run(run, duration):
+def _run(run, duration, signals):
     """Run to the end; return the exit status and, where it went wrong, an error."""
     from ..simulation import DivergenceError
 
     try:
-        run.run(duration)
+        run.run(duration, signals.is_requested)
     except DivergenceError as error:
         return 1, str(error)
-    except KeyboardInterrupt:
-        return 130, None
-    return 0, None
+    return (130 if signals.requested else 0), None
 
 
 class _Sink:
@@ -145,10 +147,13 @@ def _values(assignments) -> dict:
     return values
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(own) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        'simulate', description=_DESCRIPTION, epilog=_epilog(), allow_abbrev=False,
+        'simulate', description=_DESCRIPTION, allow_abbrev=False,
         formatter_class=argparse.RawDescriptionHelpFormatter)
+    if {'-h', '--help'} & set(own):
+        # Takes a while to gather.
+        parser.epilog = _epilog()
     add = parser.add_argument
     add('scene', metavar='SCENE', help='name of a scene, or the path of a YAML file')
     add('-d', '--duration', type=_seconds, default=10.0, metavar='SECONDS',

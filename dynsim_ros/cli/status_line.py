@@ -8,6 +8,8 @@ import shutil
 import sys
 import time
 
+from .terminal import write
+
 _TERMINAL_PERIOD, _PLAIN_PERIOD = 0.1, 1.0
 
 
@@ -35,15 +37,13 @@ class StatusLine:
         self._next = time.monotonic() + (_TERMINAL_PERIOD if self._in_place else _PLAIN_PERIOD)
         if self._in_place:
             width = shutil.get_terminal_size().columns - 1
-            sys.stdout.write(f'\r\x1b[K{text[:width]}')
+            write(sys.stdout, f'\r\x1b[K{text[:width]}')
             self._drawn = True
         else:
-            sys.stdout.write(f'{text}\n')
-        sys.stdout.flush()
+            write(sys.stdout, f'{text}\n')
 
     def end(self):
         """Leave the line as it is and go on below it."""
         if self._drawn:
-            sys.stdout.write('\n')
-            sys.stdout.flush()
+            write(sys.stdout, '\n')
             self._drawn = False

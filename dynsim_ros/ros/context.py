@@ -4,6 +4,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+import os
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
@@ -15,6 +16,9 @@ try:
 except ImportError:
     EventsExecutor = None
 
+# Beyond it the UDP ports of a domain do not exist.
+_LAST_DOMAIN = 232
+
 
 @contextmanager
 def ros_context(name: str, ros_args: Sequence[str]) -> Iterator[None]:
@@ -24,16 +28,26 @@ def ros_context(name: str, ros_args: Sequence[str]) -> Iterator[None]:
     Signals are left to the caller, so that what is being published and recorded is finished
     while ROS is still there. Raises ValueError for wrong ROS arguments.
     """
+    _check_domain(os.environ.get('ROS_DOMAIN_ID', ''))
     try:
         rclpy.init(args=[name, *ros_args], signal_handler_options=SignalHandlerOptions.NO)
     except (RuntimeError, ValueError) as error:
         # rcl appends where in its own source the error arose.
         reason = one_line(error).split(', at /')[0]
-        raise ValueError(f'ROS does not understand {" ".join(ros_args)}: {reason}') from None
+        if 'ROSArgs' in type(error).__name__:
+            raise ValueError(f'ROS does not understand {" ".join(ros_args)}: {reason}') from None
+        raise ValueError(f'ROS cannot start: {reason}') from None
     try:
         yield
     finally:
         rclpy.try_shutdown()
+
+
+def _check_domain(text: str):
+    """Raise ValueError for a ROS_DOMAIN_ID that DDS cannot use: it would end the process."""
+    if text and not (text.isdecimal() and int(text) <= _LAST_DOMAIN):
+        raise ValueError(f"ROS_DOMAIN_ID: '{text}' is no domain; give a number from 0 to "
+                         f'{_LAST_DOMAIN}')
 
 
 @contextmanager

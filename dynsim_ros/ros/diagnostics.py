@@ -22,8 +22,8 @@ class Diagnostics:
         self._name = node.get_name()
         self._publisher = node.create_publisher(
             message_class(DIAGNOSTICS.type_name), DIAGNOSTICS.topic, profile(DIAGNOSTICS.qos))
-        self.real_time_factor = 0.0
-        self.rate = 0.0
+        # Not known yet.
+        self.real_time_factor = self.rate = None
         self.begin()
 
     def begin(self):
@@ -60,8 +60,8 @@ class Diagnostics:
                        else 'running')
         return self._status('run', level, message, {
             'simulated time [s]': f'{simulator.time:.9f}', 'tick': simulator.tick,
-            'epoch': simulator.epoch, 'rate achieved [Hz]': f'{self.rate:.1f}',
-            'real-time factor': f'{self.real_time_factor:.3f}',
+            'epoch': simulator.epoch, 'rate achieved [Hz]': _shown(self.rate, 1),
+            'real-time factor': _shown(self.real_time_factor, 3),
             'missed ticks': self._pacer.missed, 'late ticks': self._pacer.late,
             'integrator': simulator.settings.integrator,
             'messages not built (nobody listened)': run.topics.skipped,
@@ -91,3 +91,7 @@ class Diagnostics:
         return {'level': level, 'name': f'{self._name}: {task}', 'message': message,
                 'hardware_id': self._run.simulator.scene.name,
                 'values': [{'key': key, 'value': str(value)} for key, value in values.items()]}
+
+
+def _shown(number, digits):
+    return 'not known yet' if number is None else f'{number:.{digits}f}'

@@ -108,7 +108,11 @@ class Run:
             self.bag.put_command(self.stamp_ns, command)
 
     def reset(self):
-        """Begin a new epoch with the initial scene; a bag ends and a new one begins."""
+        """
+        Begin a new epoch with the initial scene; a bag ends and a new one begins.
+
+        Returns why the new one could not be made, in one line, or None.
+        """
         was_recording = self.bag is not None
         self._unrecorded.clear()
         self.stop_recording()
@@ -117,7 +121,9 @@ class Run:
             try:
                 self.start_recording()
             except SceneError as error:
-                self._log.error(str(error))
+                self._log.error(f'no longer recording: {error}')
+                return str(error)
+        return None
 
     def start_recording(self):
         """Begin a bag and return its path; raise SceneError if it cannot be made."""

@@ -57,11 +57,12 @@ class Services:
 
     def _reset(self, _):
         failed = self._run.simulator.failure is not None
-        self._run.reset()
+        problem = self._run.reset()
         if failed:
             self._run.paused = False
         self._was_reset()
-        return True, f'epoch {self._run.simulator.epoch}, {self._now()}'
+        text = f'epoch {self._run.simulator.epoch}, {self._now()}'
+        return True, f'{text}; no longer recording: {problem}' if problem else text
 
     def _record(self, request):
         if request.data:

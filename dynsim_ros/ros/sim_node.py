@@ -27,9 +27,8 @@ class SimNode(Node):
     """
     Simulates a scene in real time.
 
-    Raises SceneError if a parameter given at the start is wrong or a bag cannot be made. All
-    callbacks run in one thread; they find the simulator at a tick boundary, and what they
-    change holds from there on.
+    Raises SceneError if a parameter given at the start is wrong. All callbacks run in one
+    thread; they find the simulator at a tick boundary, and what they change holds from there on.
     """
 
     def __init__(self, name='dynsim'):
@@ -66,11 +65,15 @@ class SimNode(Node):
         self._restoring = False
         self.add_post_set_parameters_callback(self._parameters_were_set)
         self.run.waiting = self._follows_clock
-        if self.parameters.own['record.enable']:
-            self.run.start_recording()
 
     def begin(self):
-        """Publish the initial state and start the timers."""
+        """
+        Publish the initial state, start recording if wanted, and the timers.
+
+        Raises SceneError if a bag cannot be made.
+        """
+        if self.parameters.own['record.enable']:
+            self.run.start_recording()
         self._begin_epoch()
         self._schedule()
         self._diagnostics_timer = self.create_timer(1.0, self._publish_diagnostics,

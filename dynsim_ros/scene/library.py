@@ -23,7 +23,10 @@ def load_scene(name_or_path):
     """
     text = str(name_or_path)
     if '/' in text or text.endswith(('.yaml', '.yml')):
-        return read_scene(Path(text).expanduser())
+        try:
+            return read_scene(Path(text).expanduser())
+        except RuntimeError:
+            raise SceneError(f'{text}: there is no such home folder') from None
     if text in scene_names():
         return read_scene(share_directory() / 'scenes' / f'{text}.yaml')
     raise SceneError(f"scene '{text}' is not known; " + did_you_mean(text, scene_names())

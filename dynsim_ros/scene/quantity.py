@@ -98,7 +98,10 @@ class Quantity:
         if not _is_list(value) or len(value) != count:
             raise SceneError(f'{name}: {shown(value)} is not a list of {count} numbers'
                              + (f' in {self.unit}' if self.unit else ''))
-        return tuple(self._number(f'{name}[{i}]', element) for i, element in enumerate(value))
+        # The order of a quaternion depends on who gave it, its letters do not.
+        labels = [f'.{letter}' for letter in 'wxyz'] if count == 4 else ['[0]', '[1]', '[2]']
+        return tuple(self._number(name + label, element)
+                     for label, element in zip(labels, value))
 
     def _inertia(self, name, value):
         if not _is_list(value):

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from .air import Air
 from .bodies import Particle, Rigid
-from .errors import did_you_mean, SceneError
+from .errors import did_you_mean, SceneError, shown
 from .quantity import check_quantities, quantity
 
 
@@ -34,6 +34,11 @@ class Scene:
 
     def __post_init__(self):
         check_quantities(self, '')
+        if not self.name or len(self.name) > 100 or not self.name.isprintable():
+            raise SceneError(f'name: {shown(self.name)} is no name of a scene; give 1 to 100 '
+                             'characters that can be printed')
+        if any('\ud800' <= letter <= '\udfff' for letter in self.description):
+            raise SceneError('description: has half a character (a surrogate); leave it out')
         for section in ('bodies', 'anchors', 'springs'):
             object.__setattr__(self, section, tuple(getattr(self, section)))
         if not self.bodies:

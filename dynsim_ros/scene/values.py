@@ -9,7 +9,7 @@ The same names are ROS parameters, '--set' on the command line and changes in a 
 from dataclasses import replace
 
 from .bodies import Rigid
-from .errors import did_you_mean, SceneError
+from .errors import did_you_mean, SceneError, shown
 from .orientation import from_ros, to_ros
 from .quantity import quantities_of
 
@@ -75,8 +75,10 @@ def _given(name, quantity, value):
     if value is None:
         # In a scene None is what is absent; what is there cannot be taken away by a value.
         return quantity.check(name, value)
-    if quantity.kind == 'orientation' and hasattr(value, '__len__') and len(value) == 4:
-        return from_ros(value)
+    if quantity.kind == 'orientation':
+        if not isinstance(value, (list, tuple)) and not hasattr(value, 'tolist'):
+            raise SceneError(f'{name}: {shown(value)} is not a list of 4 numbers x, y, z, w')
+        return from_ros(value) if len(value) == 4 else value
     if quantity.kind == 'inertia' and hasattr(value, '__len__') and len(value) == 9:
         return tuple(tuple(value[3 * row:3 * row + 3]) for row in range(3))
     return value

@@ -30,12 +30,16 @@ class OfflineRun:
         self.commands = list(commands)
         self._sink = sink
 
-    def run(self, duration):
-        """Run for a duration [s]; raise DivergenceError, or SceneError for a wrong command."""
+    def run(self, duration, is_stopped=lambda: False):
+        """
+        Run for a duration [s], or until is_stopped() says so.
+
+        Raises DivergenceError, or SceneError for a wrong command.
+        """
         simulator, sink = self._simulator, self._sink
         end = simulator.time_ns + round(duration * SECOND)
         sink.snapshot(simulator.snapshot(), simulator.settings.tick_ns)
-        while simulator.time_ns < end:
+        while simulator.time_ns < end and not is_stopped():
             self._command()
             simulator.advance_tick()
             sink.snapshot(simulator.snapshot(), simulator.settings.tick_ns)

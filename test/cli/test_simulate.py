@@ -134,16 +134,48 @@ def test_divergence(tmp_path, capsys):
     assert found['/dynsim/sphere/pose']
 
 
-def test_a_signal_leaves_a_finished_bag(tmp_path):
-    path = tmp_path / 'run.mcap'
+def begun(path, *options):
+    """Return a process that simulates for very long, once its bag grows."""
     process = subprocess.Popen(
-        [sys.executable, '-m', 'dynsim_ros.cli.simulate', 'spinning_box', '-d', '1e6', '-o', path],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        [sys.executable, '-m', 'dynsim_ros.cli.simulate', 'spinning_box', '-d', '1e6', '-o', path,
+         *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while not (path.exists() and path.stat().st_size > 100_000):
         assert process.poll() is None
-    process.send_signal(signal.SIGTERM)
+    return process
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signals_leave_a_finished_bag(tmp_path, number):
+    path = tmp_path / 'run.mcap'
+    process = begun(path)
+    # however often one asks
+    while process.poll() is None:
+        process.send_signal(number)
     out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (130, '')
     assert 'messages in' in out.splitlines()[-1]
     found, _ = bag(path)
     assert found['/dynsim/box/pose']
+
+
+def test_a_signal_at_the_start_ends_it_quietly(tmp_path):
+    for milliseconds in (100, 200, 300, 400):
+        with pytest.raises(subprocess.TimeoutExpired):
+            process = subprocess.Popen(
+                [sys.executable, '-m', 'dynsim_ros.cli.simulate', 'spinning_box', '-d', '1e6',
+                 '-q', '-o', tmp_path / f'{milliseconds}.mcap'], stderr=subprocess.PIPE, text=True)
+            process.communicate(timeout=milliseconds / 1000)
+        process.terminate()
+        _, err = process.communicate(timeout=60)
+        assert (process.returncode in (130, -signal.SIGTERM), err) == (True, '')
+
+
+def test_nobody_looks_any_more(tmp_path):
+    path = tmp_path / 'run.mcap'
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'dynsim_ros.cli.simulate', 'spinning_box', '-d', '1', '-o', path],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process.stdout.close()
+    assert (process.stderr.read(), process.wait(60)) == ('', 0)
+    found, _ = bag(path)
+    assert len(found['/dynsim/box/pose']) == 101

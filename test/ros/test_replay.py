@@ -270,8 +270,8 @@ def test_what_is_no_bag(tmp_path):
     (['--remap', '/nothing:=/b'], "no topic '/nothing' to remap in "),
     (['--remap', '/sample/pose:=/a-b'], "cannot remap /sample/pose: '/a-b' is no topic name"),
     (['--start-offset', '5'], 'start offset 5 s lies behind the end of '),
-    (['--ros-args', '-p', 'x'], 'ROS does not understand --ros-args'),
-    (['--ros-args', '-r', '__node:=a-b'], 'ROS does not understand --ros-args'),
+    (['--ros-args', '-p', 'x'], 'ROS cannot start: '),
+    (['--ros-args', '-r', '__node:=a-b'], 'ROS cannot start: '),
     (['--ros-args', '--nothing'], '--nothing'),
 ])
 def test_what_does_not_fit_the_bag(bag, arguments, part):

@@ -72,6 +72,12 @@ WRONG = [
      "anchors: ['hand'] is not a mapping of names to members"),
     ('gravity: 9.81', 'name: [a]', "name: ['a'] is not text; put it in quotes"),
     ('gravity: 9.81', 'description: 5', 'description: 5 is not text; put it in quotes'),
+    ('gravity: 9.81', 'name: ""', "name: '' is no name of a scene; give 1 to 100 characters "
+     'that can be printed'),
+    ('gravity: 9.81', r'name: "a\0b"', r"name: 'a\x00b' is no name of a scene; give 1 to 100 "
+     'characters that can be printed'),
+    ('gravity: 9.81', r'description: "\ud800"', 'description: has half a character (a '
+     'surrogate); leave it out'),
     ('gravity: 9.81', '"a\\nb": 1', r"the scene: there is no field 'a\nb'; known are: air, "
      'anchors, bodies, description, down, gravity, name, springs'),
     ('[0, 0, -1]', '[0, 0, -1', 'line 3: is not valid YAML: expected '

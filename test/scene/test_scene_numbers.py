@@ -7,6 +7,7 @@ import math
 from dynsim_ros.scene import parse_scene, Particle, RigidBody, SceneError, Sphere
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 
 def mass(text):
@@ -74,3 +75,12 @@ def test_an_orientation_that_is_nearly_of_norm_1_is_made_so():
 def test_no_inertias(inertia, words):
     with pytest.raises(SceneError, match=f'^b.inertia.*{words}'):
         RigidBody(name='b', mass=1, inertia=inertia)
+
+
+def test_a_thin_rod_however_turned_has_no_inertia_to_divide_by():
+    """Its matrix, of rank 2 but for rounding, cannot be inverted."""
+    for seed in range(50):
+        turn = Rotation.random(random_state=seed).as_matrix()
+        matrix = turn @ np.diag([0.0, 1.0, 1.0]) @ turn.T
+        with pytest.raises(SceneError, match='belong to no body'):
+            RigidBody(name='rod', mass=1, inertia=((matrix + matrix.T) / 2).tolist())

@@ -1,0 +1,47 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a program does when it is asked to end: Ctrl-C, SIGTERM, a terminal that is closed."""
+
+from __future__ import annotations
+
+import signal
+
+_ALL = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Signals:
+    """
+    Takes over the signals that ask a program to end.
+
+    First they raise KeyboardInterrupt, so that whatever takes long at the start ends at once.
+    From `hold` on they are noted in `requested` only, so that what is being published and
+    recorded is finished, however often one asks.
+    """
+
+    def __init__(self):
+        """Take over the signals of this process."""
+        self.requested = False
+        self._holding = False
+        for number in _ALL:
+            # A program started with nohup or in the background is not to be ended by these.
+            if signal.getsignal(number) != signal.SIG_IGN or number == signal.SIGTERM:
+                signal.signal(number, self._handle)
+
+    def hold(self):
+        """Let a signal be noted, from here on."""
+        self._holding = True
+
+    def is_requested(self) -> bool:
+        """Tell whether the program was asked to end."""
+        return self.requested
+
+    @staticmethod
+    def ignore():
+        """Let the program end as it is about to, the last act of it."""
+        for number in _ALL:
+            signal.signal(number, signal.SIG_IGN)
+
+    def _handle(self, *_):
+        self.requested = True
+        if not self._holding:
+            raise KeyboardInterrupt
