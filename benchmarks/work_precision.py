@@ -159,7 +159,8 @@ def table(all_results):
     lines = ['# Run time against error', '',
              'Made by `make bench` (what is measured stands at the top of work_precision.py).',
              'Milliseconds for 10 s of simulated time, the cheapest setting that '
-             'reaches the error; the ratio to scipy in brackets.', '']
+             'reaches the error; the ratio to scipy, whose '
+             'right-hand side is numpy, in brackets.', '']
     for scene, (results, doubt) in all_results.items():
         lines += [f'## {scene}', '', f'Reference known to {doubt:.1g}.', '',
                   '| method | ' + ' | '.join(f'error ≤ {level:g}' for level in levels) + ' |',
