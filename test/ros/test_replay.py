@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import itertools
 import os
-from pathlib import Path
 import pty
 import signal
 import subprocess
@@ -24,6 +23,8 @@ COMMAND = [sys.executable, '-m', 'dynsim_ros.cli.replay']
 POSE = 'geometry_msgs/msg/PoseStamped'
 CONTROL = set(map(chr, range(32))) - {'\n'}
 
+pytestmark = pytest.mark.usefixtures('discovery')
+
 
 @pytest.fixture(scope='module')
 def bag(tmp_path_factory):
@@ -32,17 +33,8 @@ def bag(tmp_path_factory):
     return path
 
 
-@pytest.fixture(scope='module', autouse=True)
-def quick_discovery():
-    """Let processes find each other in 0.3 s instead of up to 3 s."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE',
-                     str(Path(__file__).parent.parent / 'quick_discovery.xml'))
-        yield
-
-
 @pytest.fixture(scope='module')
-def ears(quick_discovery):
+def ears(discovery):
     listener = Listener(
         f'/sample/pose={POSE}', '/sample/twist=geometry_msgs/msg/TwistStamped',
         '/sample/epoch=std_msgs/msg/UInt64+latched', f'/ghost/pose={POSE}',
