@@ -11,7 +11,7 @@ import sys
 
 from .progress import Progress
 from .ros_arguments import split
-from .signals import Signals
+from .signals import Interrupted, Signals
 
 _DESCRIPTION = """\
 Publish the messages of a bag on the topics they were recorded from, with the recorded timing.
@@ -35,7 +35,7 @@ def main(args: Sequence[str] | None = None) -> int:
     try:
         own, ros_args = split(sys.argv[1:] if args is None else args)
         return _replay(_parser().parse_args(own), ros_args, signals)
-    except KeyboardInterrupt:
+    except Interrupted:
         return 0
     except ImportError as error:
         print(f'error: {error}: install or source ROS 2 Jazzy', file=sys.stderr)

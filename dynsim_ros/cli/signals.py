@@ -5,15 +5,25 @@
 from __future__ import annotations
 
 import signal
+import sys
 
 _ALL = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Interrupted(BaseException):
+    """
+    The program was asked to end before it had begun.
+
+    Not a KeyboardInterrupt: once one of those has gone through an exec(), as imports have them,
+    Python ends itself by SIGINT, although the exception was caught.
+    """
 
 
 class Signals:
     """
     Takes over the signals that ask a program to end.
 
-    First they raise KeyboardInterrupt, so that whatever takes long at the start ends at once.
+    First they raise Interrupted, so that whatever takes long at the start ends at once.
     From `hold` on they are noted in `requested` only, so that what is being published and
     recorded is finished, however often one asks.
     """
@@ -22,13 +32,19 @@ class Signals:
         """Take over the signals of this process."""
         self.requested = False
         self._holding = False
+        # Within a callback from C, Python reports an exception and drops it.
+        report = sys.unraisablehook
+        sys.unraisablehook = lambda dropped: (
+            None if isinstance(dropped.exc_value, Interrupted) else report(dropped))
         for number in _ALL:
             # A program started with nohup or in the background is not to be ended by these.
             if signal.getsignal(number) != signal.SIG_IGN or number == signal.SIGTERM:
                 signal.signal(number, self._handle)
 
     def hold(self):
-        """Let a signal be noted, from here on."""
+        """Let a signal be noted, from here on; raise Interrupted if one was dropped before."""
+        if self.requested:
+            raise Interrupted
         self._holding = True
 
     def is_requested(self) -> bool:
@@ -44,4 +60,4 @@ class Signals:
     def _handle(self, *_):
         self.requested = True
         if not self._holding:
-            raise KeyboardInterrupt
+            raise Interrupted

@@ -8,7 +8,7 @@ import argparse
 import sys
 
 from .ros_arguments import split
-from .signals import Signals
+from .signals import Interrupted, Signals
 from .status_line import StatusLine
 
 _DESCRIPTION = """\
@@ -42,7 +42,7 @@ def main(args=None) -> int:
     try:
         own, ros_args = split(sys.argv[1:] if args is None else args)
         return _simulate(_parser(own).parse_args(own), ros_args, signals)
-    except KeyboardInterrupt:
+    except Interrupted:
         return 0
     except ImportError as error:
         print(f'error: {error}: install or source ROS 2 Jazzy', file=sys.stderr)

@@ -9,7 +9,7 @@ import sys
 import time
 
 from .progress import Progress
-from .signals import Signals
+from .signals import Interrupted, Signals
 
 _DESCRIPTION = """\
 Simulate a scene into a bag, without any ROS process and as fast as the machine can.
@@ -51,7 +51,7 @@ def main(args=None) -> int:
     except OSError as error:
         print(f'error: {error.filename or "the bag"}: {error.strerror}; choose another --output',
               file=sys.stderr)
-    except KeyboardInterrupt:
+    except Interrupted:
         return 130
     finally:
         if args is None:
