@@ -7,9 +7,10 @@ from rcl_interfaces.msg import (FloatingPointRange, ParameterDescriptor, Paramet
 from rclpy.parameter import Parameter
 
 from .own_parameters import check_own, OWN
-from ..scene import (did_you_mean, get_value, get_values, load_scene, scene_quantities, SceneError,
-                     with_values)
+from ..scene import (did_you_mean, get_value, get_values, load_scene, scene_quantities,
+                     SceneError)
 from ..simulation import Settings
+from ..simulation.changes import changed
 from ..simulation.settings import (CHOICES, setting_description, SETTING_NAMES,
                                    setting_quantities)
 
@@ -44,10 +45,7 @@ class Parameters:
         for name in given:
             if name not in self.known:
                 raise SceneError(self._unknown(name))
-        self.scene = with_values(scene, {name: value for name, value in given.items()
-                                         if name in self.quantities})
-        self.settings = Settings(**{name: value for name, value in given.items()
-                                    if name in SETTING_NAMES})
+        self.scene, self.settings = changed(scene, Settings(), given, at_start=True)
         for name, value in self._values(self.scene, self.settings).items():
             node.declare_parameter(name, value, self._descriptor(name), ignore_override=True)
 
@@ -67,12 +65,18 @@ class Parameters:
             if name.startswith(_QOS) and name not in known:
                 raise SceneError(f"parameter '{name}' is not known; " + did_you_mean(name, known))
 
-    def check(self, parameters, simulator):
-        """Raise SceneError if a group of new values cannot be set; change nothing."""
+    def checked(self, parameters, simulator):
+        """
+        Return a group of parameters with their values as they will be in force.
+
+        Raises SceneError if they cannot be set; changes nothing.
+        """
         for parameter in parameters:
             self._check_kind(parameter)
         self._node_values(parameters)
-        simulator.changed_by(self.run_values(parameters))
+        scene, _ = simulator.changed_by(self.run_values(parameters))
+        return [Parameter(parameter.name, value=get_value(scene, parameter.name))
+                if parameter.name in self.quantities else parameter for parameter in parameters]
 
     def run_values(self, parameters):
         """Return {name: value} of those that are quantities of the scene or settings."""
@@ -98,12 +102,6 @@ class Parameters:
             if parameter.type_ == Parameter.Type.INTEGER_ARRAY:
                 return Parameter(name, value=[float(a) for a in value])
         return parameter
-
-    def canonical(self, parameters, simulator):
-        """Return parameters that can be set with their values as they will be in force."""
-        scene, _ = simulator.changed_by(self.run_values(parameters))
-        return [Parameter(parameter.name, value=get_value(scene, parameter.name))
-                if parameter.name in self.quantities else parameter for parameter in parameters]
 
     def _unknown(self, name):
         return f"parameter '{name}' is not known; " + did_you_mean(name, self.known)

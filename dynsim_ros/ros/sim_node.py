@@ -91,12 +91,11 @@ class SimNode(Node):
             return super().set_parameters_atomically(parameter_list)
         parameters = [self.parameters.converted(parameter) for parameter in parameter_list]
         try:
-            self.parameters.check(parameters, self.run.simulator)
+            parameters = self.parameters.checked(parameters, self.run.simulator)
             self._check_clock({parameter.name: parameter.value for parameter in parameters})
         except SceneError as error:
             return refused(str(error))
-        return super().set_parameters_atomically(
-            self.parameters.canonical(parameters, self.run.simulator))
+        return super().set_parameters_atomically(parameters)
 
     def _check_clock(self, values):
         """Raise SceneError if new values of parameters do not go with the clock."""
