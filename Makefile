@@ -18,7 +18,7 @@ PARAMETERS = -p record.enable:=true \
 	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
 
 .DELETE_ON_ERROR:
-.PHONY: help run test bench lint clean stale
+.PHONY: help run test bench bench-quick bench-stability bench-skipping lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -26,7 +26,11 @@ help:
 	@echo '               SCENE=spinning_box          a scene of scenes/, or the path of a YAML file'
 	@echo "               ARGS='-p rate:=200.0'       more ROS arguments for the node"
 	@echo "make test    run the test suite            ARGS='-k bag -x' hands options to pytest"
-	@echo 'make bench   measure run time against error (minutes); table and plot go to benchmarks/'
+	@echo 'make bench   measure run time against error (half an hour); tables and plot go to benchmarks/'
+	@echo '               ARGS="--scenes S2 --peers heyoka --output /tmp"'
+	@echo 'make bench-quick   the main scenes against the fastest engines, in less than three minutes'
+	@echo 'make bench-stability   every method and the engines over twelve decades of parameters; to benchmarks/'
+	@echo 'make bench-skipping    what a step costs with each term of a scene removed; to benchmarks/'
 	@echo 'make lint    check the style'
 	@echo 'make clean   remove .venv, caches and build output; recorded runs stay'
 	@echo
@@ -40,7 +44,17 @@ test: $(VENV)/ready_for_tests
 	@exec tools/in_venv python -m pytest $(ARGS)
 
 bench: $(VENV)/ready_for_benchmarks
-	@exec tools/in_venv python benchmarks/work_precision.py $(ARGS)
+	@tools/in_venv python benchmarks/work_precision.py $(ARGS)
+	@tools/in_venv python benchmarks/c_speed.py
+
+bench-quick: $(VENV)/ready_for_benchmarks
+	@exec tools/in_venv python benchmarks/work_precision.py --quick $(ARGS)
+
+bench-stability: $(VENV)/ready_for_benchmarks
+	@exec tools/in_venv python benchmarks/stability.py --long $(ARGS)
+
+bench-skipping: $(VENV)/ready_for_benchmarks
+	@exec tools/in_venv python benchmarks/skipping.py $(ARGS)
 
 lint: $(VENV)/ready_for_tests
 	@tools/in_venv python -m flake8

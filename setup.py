@@ -53,6 +53,14 @@ setup(
             'ros-jazzy-rclpy[fastrtps]>=7.1,<7.2',
         ],
         'bench': ['matplotlib>=3.6,<4', 'scipy>=1.9,<2'],
+        # What the benchmarks compare with: tools/set_up installs each of them if it can be had.
+        'peers': [
+            'drake>=1.20,<2',
+            'heyoka>=5,<8',
+            'mujoco>=3,<5',
+            'numbalsoda>=0.3,<1',
+            'pybullet>=3.2,<4',
+        ],
         'test': [
             'catkin_pkg>=1,<2',
             'colcon-common-extensions>=0.3,<1',
@@ -63,6 +71,7 @@ setup(
             'flake8-import-order>=0.18,<1',
             'flake8-quotes>=3.3,<4',
             'mcap-ros2-support>=0.5,<1',
+            'mpmath>=1.2,<2',
             'pytest>=7.4,<9',
             'pytest-timeout>=2.1,<3',
             'rosbags>=0.10,<1',

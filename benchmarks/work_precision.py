@@ -1,215 +1,152 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Run time against error of the integrators, beside scipy's DOP853, in one run on one core.
+Run time against error: dynsim_ros beside every engine that is installed, on one core.
 
-Usage: python benchmarks/work_precision.py [--rounds N]; writes work_precision.md and .png beside
-this file. Scenes: sphere_on_spring and particle_on_spring, 10 s. Error: the largest of the
-differences of position [m], velocity [m/s], orientation (angle) [rad] and angular velocity
-[rad/s] at the end, each over max(1, its size). Reference: rk4 in 80-bit arithmetic with
-numpy, written here independently of the package. Time: the least over interleaved rounds.
+Usage: python benchmarks/work_precision.py [--quick] [--scenes S1,S2] [--peers heyoka,scipy]
+[--rounds N] [--output FOLDER]; writes work_precision.csv, .md and .png. README.md beside this file
+tells what is measured and how. --quick writes nothing: S1, S2 and S3q against heyoka and
+numbalsoda; its last line has the lowest ratio for each error.
 """
 
 import argparse
+from functools import partial
 from pathlib import Path
+import sys
 import time
+import warnings
 
-from dynsim_ros.integrators import METHODS
-from dynsim_ros.scene import load_scene
-from dynsim_ros.simulation import Simulator
-import matplotlib
+from cases import CASES
+from levels import LEVELS, ratio
+from measure import end_error, LONGEST, measure, use_one_core
 import numpy as np
-from scipy.integrate import solve_ivp
+import peers
+from quiet import silence_libraries
+from reference import reference_end, reference_samples
+import tables
 
-matplotlib.use('Agg')
-HERE = Path(__file__).parent
-SCENES = ('sphere_on_spring', 'particle_on_spring')
-DURATION = 10.0
-STEPS = [1e-2 / 2 ** i for i in range(0, 12)]
-TOLERANCES = [10.0 ** -e for e in range(3, 13)]
-
-
-def right_hand_side(scene, real):
-    """Return f(t, y) for a scene of one body on one spring, y: x, v, then q (w x y z), omega."""
-    body, spring, anchor, air = scene.bodies[0], scene.springs[0], scene.anchors[0], scene.air
-    vector = [np.array(a, dtype=real) for a in (anchor.position, scene.down)]
-    weight = real(body.mass) * real(scene.gravity) * vector[1]
-    mass, k, rest = real(body.mass), real(spring.stiffness), real(spring.natural_length)
-    rigid = hasattr(body, 'radius')
-    b = real(spring.damping or 0)
-    drag = real(air.linear_drag if air else 0)
-    whirl_drag = real(air.rotational_drag if air and rigid else 0)
-    inertia = real(2) / real(5) * mass * real(body.radius) ** 2 if rigid else None
-    offset = np.array([0, 0, body.radius], dtype=real) if rigid else None
-
-    def point_f(t, y):
-        x, v = y[:3], y[3:6]
-        d = x - vector[0]
-        length = np.sqrt(d @ d)
-        u = d / length
-        force = -(k * (length - rest) + b * (v @ u)) * u - drag * v + weight
-        return np.concatenate([v, force / mass])
-
-    def sphere_f(t, y):
-        x, v, q, omega = y[:3], y[3:6], y[6:10], y[10:]
-        w, s = q[0], q[1:]
-        arm = offset + 2 * (w * np.cross(s, offset) + np.cross(s, np.cross(s, offset)))
-        d = x + arm - vector[0]
-        length = np.sqrt(d @ d)
-        u = d / length
-        rate = (v + np.cross(omega, arm)) @ u
-        pull = -(k * (length - rest) + b * rate) * u
-        turn = np.concatenate([[-(s @ omega)], w * omega + np.cross(omega, s)]) / 2
-        return np.concatenate([v, (pull - drag * v + weight) / mass, turn,
-                               (np.cross(arm, pull) - whirl_drag * omega) / inertia])
-
-    return sphere_f if rigid else point_f
+QUICK = {'scenes': ('S1', 'S2', 'S3q'), 'peers': ('heyoka', 'numbalsoda')}
+# Engines that take much longer than the others are measured on these only, unless named.
+SLOW = ('scipy', 'mujoco', 'drake', 'pybullet')
+SLOW_SCENES = ('S1', 'S2', 'S3q', 'S3q8', 'chain2', 'flight')
+# Case, rate [1/s]: sampled runs, all of whose samples must have the error.
+SAMPLED = ('S2', 1000.0)
 
 
-def initial(scene, real):
-    """Return the initial state of a scene of one body."""
-    body = scene.bodies[0]
-    parts = [body.position, body.velocity]
-    if hasattr(body, 'radius'):
-        parts += [body.orientation, body.angular_velocity]
-    return np.concatenate([np.array(part, dtype=real) for part in parts])
+def usable(names, report):
+    """Return ({name: module}, versions) of the peers that are there; report the others."""
+    found, versions = {}, []
+    for name in names:
+        module = peers.peer(name)
+        try:
+            versions.append(f'{name} {module.available()}'.replace('ours', 'dynsim_ros'))
+            found[name] = module
+        except peers.Unavailable as reason:
+            report(f'{name}: {reason}')
+    return found, versions
 
 
-def reference(scene, steps):
-    """Return the state at the end by extrapolated rk4 in 80-bit arithmetic."""
-    real = np.longdouble
-    f = right_hand_side(scene, real)
-
-    def run(count):
-        y, h = initial(scene, real), real(DURATION) / count
-        for _ in range(count):
-            k1 = f(0, y)
-            k2 = f(0, y + h / 2 * k1)
-            k3 = f(0, y + h / 2 * k2)
-            y = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + f(0, y + h * k3))
-        return y
-
-    coarse, fine = run(steps), run(2 * steps)
-    return fine + (fine - coarse) / 15, float(np.abs(fine - coarse).max() / 15)
+def run_case(case, modules, rounds, report, longest):
+    """Return the Cells of a case."""
+    jobs = []
+    for name, module in modules.items():
+        if reason := module.supports(case):
+            if name not in peers.NOT_COUNTED:
+                report(f'{case.name}: {name}: {reason}')
+            continue
+        jobs.append((name, [(setting, partial(module.prepare, case, setting))
+                            for setting in module.settings(case)]))
+    return measure(jobs, rounds, end_error(case, reference_end(case)),
+                   lambda text: report(f'{case.name}: {text}'), longest)
 
 
-def error(y, expected):
-    """Return the error of a state as defined above."""
-    y, expected = np.asarray(y, float), np.asarray(expected, float)
+def run_sampled(modules, rounds, report):
+    """Return (title, Cells) of the sampled run."""
+    case, rate = CASES[SAMPLED[0]], SAMPLED[1]
+    times = np.arange(round(case.duration * rate) + 1) / rate
+    expected = reference_samples(case, times)
 
-    def relative(part):
-        return np.abs(y[part] - expected[part]).max() / max(1, np.abs(expected[part]).max())
-
-    errors = [relative(slice(0, 3)), relative(slice(3, 6))]
-    if len(y) > 6:
-        p, q = y[6:10] / np.linalg.norm(y[6:10]), expected[6:10]
-        w, s = p[0] * q[0] + p[1:] @ q[1:], p[0] * q[1:] - q[0] * p[1:] + np.cross(p[1:], q[1:])
-        errors += [2 * np.arctan2(np.linalg.norm(s), abs(w)), relative(slice(10, 13))]
-    return max(errors)
-
-
-def ours(scene, method, step):
-    """Return a function that runs a scene to the end and returns the state."""
-    def run():
-        simulator = Simulator(scene, integrator=method, step=step)
-        simulator.advance(round(DURATION * 1e9))
-        return simulator.snapshot().state[:13 if hasattr(scene.bodies[0], 'radius') else 6]
-    return run
+    jobs = [(name, [(setting, partial(module.prepare_samples, case, setting, times))
+                    for setting in module.settings(case)])
+            for name, module in modules.items() if hasattr(module, 'prepare_samples')]
+    title = f'{case.name} sampled at {rate:g} Hz'
+    return title, measure(jobs, rounds, end_error(case, expected),
+                          lambda text: report(f'{title}: {text}'), 1.0)
 
 
-def peer(scene, tolerance):
-    """Return a function that runs scipy's DOP853 to the end and returns the state."""
-    f, y0 = right_hand_side(scene, float), initial(scene, float)
-
-    def run():
-        return solve_ivp(f, (0, DURATION), y0, 'DOP853', rtol=tolerance, atol=tolerance,
-                         t_eval=[DURATION]).y[:, -1]
-    return run
-
-
-def measure(scene, rounds):
-    """Return {name: [(setting, error, seconds)]} and the reference's own error."""
-    expected, doubt = reference(scene, 100_000)
-    runs = {name: [(step, ours(scene, name, step)) for step in STEPS] for name in METHODS}
-    runs['scipy DOP853'] = [(tolerance, peer(scene, tolerance)) for tolerance in TOLERANCES]
-    cells = {(name, setting): [np.inf, run, None] for name, row in runs.items()
-             for setting, run in row}
-    for round_ in range(rounds + 1):
-        for (name, _), cell in cells.items():
-            if round_ > 1 and name.startswith('scipy'):
-                continue
-            start = time.perf_counter()
-            try:
-                cell[2] = cell[1]()
-            except ArithmeticError:
-                continue
-            # The first round compiles.
-            if round_:
-                cell[0] = min(cell[0], time.perf_counter() - start)
-    results = {}
-    for (name, setting), (seconds, _, y) in cells.items():
-        if y is not None and (e := error(y, expected)) < 10:
-            results.setdefault(name, []).append((setting, e, seconds))
-    return results, doubt
+def lowest(results, names):
+    """Return the line of the lowest ratio for each error."""
+    texts = []
+    for level in LEVELS:
+        ratios = {case: ratio(cells, level, names)[2] for case, cells in results.items()}
+        ratios = {case: value for case, value in ratios.items() if value is not None}
+        if ratios:
+            case = min(ratios, key=ratios.get)
+            texts.append(f'{level:.0e} {ratios[case]:.2f} ({case})'.replace('e-0', 'e-'))
+    return 'lowest ratio per error: ' + (', '.join(texts) or 'none')
 
 
-def table(all_results):
-    """Return the Markdown text."""
-    levels = (1e-2, 1e-3, 1e-6, 1e-9)
-    lines = ['# Run time against error', '',
-             'Made by `make bench` (what is measured stands at the top of work_precision.py).',
-             'Milliseconds for 10 s of simulated time, the cheapest setting that '
-             'reaches the error; the ratio to scipy, whose '
-             'right-hand side is numpy, in brackets.', '']
-    for scene, (results, doubt) in all_results.items():
-        lines += [f'## {scene}', '', f'Reference known to {doubt:.1g}.', '',
-                  '| method | ' + ' | '.join(f'error ≤ {level:g}' for level in levels) + ' |',
-                  '|---|' + '---|' * len(levels)]
-        best = {name: [min((s for _, e, s in rows if e <= level), default=None)
-                       for level in levels] for name, rows in results.items()}
-        for name, row in best.items():
-            cells = [_cell(s, t) for s, t in zip(row, best['scipy DOP853'])]
-            lines.append(f'| {name} | ' + ' | '.join(cells) + ' |')
-        lines.append('')
-    return '\n'.join(lines)
-
-
-def _cell(seconds, scipy_seconds):
-    if seconds is None:
-        return '–'
-    ratio = f' ({scipy_seconds / seconds:.0f}×)' if scipy_seconds else ''
-    return f'{seconds * 1e3:.3g}{ratio}'
-
-
-def plot(all_results, path):
-    """Draw run time against error, a panel for each scene."""
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(1, len(all_results), figsize=(11, 4.6), sharey=True)
-    for ax, (scene, (results, _)) in zip(axes, all_results.items()):
-        for name, rows in results.items():
-            ax.loglog([e for _, e, _ in rows], [1e3 * s for _, _, s in rows], 'o-', label=name,
-                      markersize=3.5, linewidth=1.2)
-        ax.set(title=scene, xlabel='error at 10 s')
-        ax.invert_xaxis()
-        ax.grid(alpha=0.3)
-    axes[0].set_ylabel('run time [ms]')
-    axes[0].legend(fontsize=8)
-    figure.suptitle('10 s of simulated time on one core: lower and further right is better',
-                    fontsize=10)
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
+    parser.add_argument('--quick', action='store_true',
+                        help='S1, S2, S3q against heyoka and numbalsoda, no files')
+    parser.add_argument('--scenes', type=lambda text: text.split(','), help='cases, with commas')
+    parser.add_argument('--peers', type=lambda text: text.split(','), help='peers, with commas')
+    parser.add_argument('--rounds', type=int, default=20, help='timed rounds (default 20)')
+    parser.add_argument('--output', type=Path, default=Path(__file__).parent,
+                        help='folder for the results (default: that of this file)')
+    options = parser.parse_args()
+    chosen = QUICK if options.quick else {'scenes': tuple(CASES), 'peers': peers.NAMES[1:]}
+    options.peers_named = bool(options.peers)
+    options.scenes = options.scenes or chosen['scenes']
+    options.peers = options.peers or chosen['peers']
+    for given, known, what in ((options.scenes, CASES, 'scenes'), (options.peers, peers.NAMES,
+                                                                   'peers')):
+        if unknown := [name for name in given if name not in known]:
+            parser.error(f"--{what}: '{unknown[0]}' is not known; known are {', '.join(known)}")
+    return options
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
-    parser.add_argument('--rounds', type=int, default=5, help='timed rounds (default 5)')
-    options = parser.parse_args()
-    results = {name: measure(load_scene(name), options.rounds) for name in SCENES}
-    (HERE / 'work_precision.md').write_text(table(results), encoding='utf-8')
-    plot(results, HERE / 'work_precision.png')
-    print(table(results))
+    options = arguments()
+    silence_libraries()
+    # scipy says of every tolerance that it finds too small what it uses instead.
+    warnings.simplefilter('ignore')
+    use_one_core()
+    left_out, results = [], {}
+
+    def report(text):
+        left_out.append(text)
+        print(f'left out: {text}', flush=True)
+
+    modules, versions = usable(['ours', *(name for name in options.peers if name != 'ours')],
+                               report)
+    for name in options.scenes:
+        start = time.time()
+        used = {peer: module for peer, module in modules.items()
+                if options.peers_named or peer not in SLOW or name in SLOW_SCENES}
+        results[name] = run_case(CASES[name], used, options.rounds, report,
+                                 0.1 if options.quick else LONGEST)
+        print(f'\n{name} ({time.time() - start:.0f} s)')
+        print('\n'.join(tables.case_table(results[name])), flush=True)
+    notes = {name: f'{CASES[name].note}, {CASES[name].duration:g} s' for name in results}
+    if not options.quick:
+        if SAMPLED[0] in options.scenes:
+            title, cells = run_sampled(modules, options.rounds, report)
+            results[title], notes[title] = cells, 'the worst error of all samples counts'
+            print(f'\n{title}\n' + '\n'.join(tables.case_table(cells)), flush=True)
+        write(options.output, results, notes, versions, left_out)
+    print(lowest(results, [name for name in modules
+                           if name != 'ours' and name not in peers.NOT_COUNTED]))
+
+
+def write(folder, results, notes, versions, left_out):
+    versions = [*tables.base_versions(), *versions]
+    tables.write_csv(folder / 'work_precision.csv', results)
+    (folder / 'work_precision.md').write_text(
+        tables.markdown(results, notes, versions, left_out), encoding='utf-8')
+    tables.plot(results, folder / 'work_precision.png')
 
 
 if __name__ == '__main__':
-    main()
+    sys.exit(main())

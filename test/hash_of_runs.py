@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Print, as JSON, {scene: every bit of a short commanded run of it, hashed}."""
+"""Print, as JSON, {scene and method: every bit of a short commanded run of it, hashed}."""
 
 import hashlib
 import json
@@ -9,10 +9,15 @@ from dynsim_ros.scene import load_scene, scene_names
 from dynsim_ros.simulation import MoveAnchor, PushBody, Simulator
 import numpy as np
 
+# The methods that choose their steps take long to compile: with a scene of every kind of body.
+RUNS = [*((name, 'rk4') for name in scene_names()), ('falling_in_wind', 'auto'),
+        ('particle_on_spring', 'auto'), ('sphere_on_spring', 'auto'), ('spinning_box', 'auto')]
 
-def bits_of(scene):
-    """Return a digest of states, wrenches and energies of a run."""
-    simulator = Simulator(scene, rate=333, wrench_timeout=0.05)
+
+def bits_of(name, method):
+    """Return a digest of states, wrenches and energies of a run of a scene of the package."""
+    scene = load_scene(name)
+    simulator = Simulator(scene, integrator=method, rate=333, wrench_timeout=0.05)
     digest = hashlib.sha256()
     for command in (PushBody(scene.bodies[0].name, (1, 2, 3)),
                     *(MoveAnchor(anchor.name, (0.1, 0.2, 2)) for anchor in scene.anchors)):
@@ -25,9 +30,14 @@ def bits_of(scene):
     return digest.hexdigest()
 
 
+def bits_of_all():
+    """Return {scene and method: digest}."""
+    return {f'{name} {method}': bits_of(name, method) for name, method in RUNS}
+
+
 def main():
-    """Print the digests of all scenes of the package."""
-    print(json.dumps({name: bits_of(load_scene(name)) for name in scene_names()}))
+    """Print the digests of all runs."""
+    print(json.dumps(bits_of_all()))
 
 
 if __name__ == '__main__':

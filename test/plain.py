@@ -6,14 +6,23 @@ import json
 import os
 import sys
 
+import numba
 import numpy as np
 import pytest
 from tree import output_of, ROOT
 
 
+def compiled(formula):
+    """Return a formula as compiled code runs it: called from Python it would run as Python."""
+    @numba.njit(error_model='numpy')
+    def call(*arguments):
+        return formula(*arguments)
+    return call
+
+
 def compiled_and_plain(formula):
     """Return a decorator that runs a test with both forms, as the argument `formula`."""
-    return pytest.mark.parametrize('formula', [formula, formula.py_func],
+    return pytest.mark.parametrize('formula', [compiled(formula), formula.py_func],
                                    ids=['compiled', 'plain'])
 
 

@@ -65,6 +65,7 @@ def _simulate(options, signals) -> int:
     from ..messages.scene_channels import scene_channels
     from ..scene import load_scene
     from ..simulation.command_file import read_commands
+    from ..simulation.error_estimate import estimate_error
     from ..simulation.offline import OfflineRun, simulator_with
 
     simulator = simulator_with(load_scene(options.scene), _values(options.set))
@@ -85,12 +86,18 @@ def _simulate(options, signals) -> int:
         bag.close()
         progress.clear()
     elapsed = time.monotonic() - started
+    if simulator.shortfall:
+        progress.say(simulator.shortfall)
     progress.say(f'{simulator.time:g} s simulated in {elapsed:.2f} s '
                  f'({simulator.time / elapsed:.3g} times real time); '
                  f'{bag.recorder.messages} messages in {bag.path}')
     if run.commands and status == 0:
         progress.say(f'{len(run.commands)} commands lie at the end or behind it and were not '
                      f'carried out, the first at {run.commands[0][0] * 1e-9:g} s')
+    if options.error and status == 0:
+        # The run itself again, from its start, and a finer one.
+        progress.say(f'error at the end, estimated: '
+                     f'{estimate_error(simulator, commands, options.duration)}')
     if error or bag.recorder.error:
         print(f'error: {error or bag.recorder.error}', file=sys.stderr)
     return 2 if bag.recorder.error else status
@@ -165,6 +172,8 @@ def _parser(own) -> argparse.ArgumentParser:
     add('-c', '--commands', metavar='FILE', help='timed commands, a YAML file')
     add('--compression', choices=('zstd', 'lz4', 'none'), default='zstd',
         help='of the bag (default zstd)')
+    add('-e', '--error', action='store_true',
+        help='estimate the error at the end, by a finer second run')
     add('-q', '--quiet', action='store_true', help='print errors only')
     return parser
 

@@ -7,10 +7,12 @@ As the sheet has it: R[k + 1] = R_axis-angle R[k], with omega h as axis times an
 """
 
 from .explicit_euler import translate
+from .memory import load, number_row, store
 from ..physics.jit import formula, kernel
 from ..physics.motion import accelerations
 from ..physics.rotation import axis_angle_matrix, matrix_quaternion, rotation_matrix
-from ..physics.state import normalise, omega_at, put_quaternion, quaternion, quaternion_at
+from ..physics.state import (counts, moving_size, normalise, omega_at, put_quaternion, quaternion,
+                             quaternion_at)
 from ..physics.vector import at, matrix_product, scale
 
 
@@ -29,15 +31,19 @@ def turn(bodies, rigid, h, y):
 
 
 @kernel
-def advance(model, anchors, pushes, t_ns, h_ns, steps, y, scratch):
+def advance(model, drive, t_ns, h_ns, steps, state, memory):
     """Take a number of steps of one length; see Method for the arguments."""
-    bodies = model.mass.shape[0]
-    a = scratch[0]
+    bodies, rigid = counts(model)
+    size = moving_size(drive.works, bodies, rigid)
+    y = number_row(model.several, memory, 0, size)
+    a = number_row(model.several, memory, 1, size)
+    load(size, state, y)
     h = h_ns * 1e-9
     removed = 0.0
     for k in range(steps):
-        accelerations(model, anchors, pushes, (t_ns + k * h_ns) * 1e-9, y, a)
-        turn(bodies, model.rigid, h, y)
-        translate(bodies, model.rigid, h, a, y)
-        removed += normalise(bodies, model.rigid, y)
+        accelerations(model, drive, (t_ns + k * h_ns) * 1e-9, y, a)
+        turn(bodies, rigid, h, y)
+        translate(bodies, rigid, size, h, a, y)
+        removed += normalise(bodies, rigid, y)
+    store(size, y, state)
     return removed

@@ -6,11 +6,12 @@ Semi-implicit Euler: velocities first, then positions and orientations with the 
 Order 1; symplectic where forces depend on positions alone, so that energy errors stay bounded.
 """
 
+from .memory import load, number_row, store
 from ..physics.jit import formula, kernel
 from ..physics.motion import accelerations
 from ..physics.rotation import axis_angle_quaternion, quaternion_product
-from ..physics.state import (normalise, omega_at, put_quaternion, quaternion, quaternion_at,
-                             velocity_at)
+from ..physics.state import (counts, moving_size, normalise, omega_at, put_quaternion, quaternion,
+                             quaternion_at, velocity_at)
 from ..physics.vector import at, scale
 
 
@@ -25,21 +26,24 @@ def turn(bodies, rigid, h, y):
 
 
 @kernel
-def advance(model, anchors, pushes, t_ns, h_ns, steps, y, scratch):
+def advance(model, drive, t_ns, h_ns, steps, state, memory):
     """Take a number of steps of one length; see Method for the arguments."""
-    bodies = model.mass.shape[0]
-    rigid = model.rigid
-    a = scratch[0]
+    bodies, rigid = counts(model)
+    size = moving_size(drive.works, bodies, rigid)
+    y = number_row(model.several, memory, 0, size)
+    a = number_row(model.several, memory, 1, size)
+    load(size, state, y)
     h = h_ns * 1e-9
     removed = 0.0
     for k in range(steps):
-        accelerations(model, anchors, pushes, (t_ns + k * h_ns) * 1e-9, y, a)
+        accelerations(model, drive, (t_ns + k * h_ns) * 1e-9, y, a)
         for i in range(velocity_at(bodies), quaternion_at(bodies)):
-            y[i] += h * a[i]
-        for i in range(omega_at(bodies, rigid), y.shape[0]):
-            y[i] += h * a[i]
+            y[i] = y[i] + h * a[i]
+        for i in range(omega_at(bodies, rigid), size):
+            y[i] = y[i] + h * a[i]
         for i in range(3 * bodies):
-            y[i] += h * y[velocity_at(bodies) + i]
+            y[i] = y[i] + h * y[velocity_at(bodies) + i]
         turn(bodies, rigid, h, y)
         removed += normalise(bodies, rigid, y)
+    store(size, y, state)
     return removed

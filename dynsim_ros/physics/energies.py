@@ -11,31 +11,31 @@ from .jit import formula, kernel
 from .motion import matrix_at
 from .rotation import rotation_matrix
 from .spring_damper import length_and_direction
-from .state import omega_at, quaternion, quaternion_at, velocity_at
+from .state import counts, omega_at, quaternion, quaternion_at, velocity_at
 from .vector import at, subtract
 
 
 @formula
-def group_energy(bodies, rigid, p, q, stiffness, natural_length, epsilon, anchors, t, y):
+def group_energy(several, bodies, rigid, p, q, stiffness, natural_length, epsilon, anchors, t, y):
     """Return the energy stored in one SpringGroup [J]."""
     total = 0.0
     for s in range(stiffness.shape[0]):
-        r_p, _, _ = end_motion(bodies, rigid, p.anchor, p.particle, p.body, p.offset, s, anchors,
-                               t, y)
-        r_q, _, _ = end_motion(bodies, rigid, q.anchor, q.particle, q.body, q.offset, s, anchors,
-                               t, y)
+        r_p, _, _ = end_motion(several, bodies, rigid, p.anchor, p.particle, p.body, p.offset, s,
+                               anchors, True, t, y)
+        r_q, _, _ = end_motion(several, bodies, rigid, q.anchor, q.particle, q.body, q.offset, s,
+                               anchors, True, t, y)
         length, _ = length_and_direction(subtract(r_q, r_p), epsilon[s])
         total += spring_energy(stiffness[s], length, natural_length[s])
     return total
 
 
 @formula
-def springs_energy(bodies, rigid, springs, anchors, t, y):
+def springs_energy(several, bodies, rigid, springs, anchors, t, y):
     """Return the energy stored in all springs [J]."""
     total = 0.0
     if springs is not None:
         for group in literal_unroll(springs):
-            total += group_energy(bodies, rigid, group.p, group.q, group.stiffness,
+            total += group_energy(several, bodies, rigid, group.p, group.q, group.stiffness,
                                   group.natural_length, group.epsilon, anchors, t, y)
     return total
 
@@ -76,11 +76,10 @@ def gravity_energies(bodies, weight, y):
 @kernel
 def energies(model, anchors, t, y):
     """Return (kinetic, gravitational, spring) energy [J] of a state."""
-    bodies = model.mass.shape[0]
-    rigid = model.rigid
+    bodies, rigid = counts(model)
     kinetic = (round_energies(bodies, rigid, model.round_body, model.round_inertia, y)
                + general_energies(bodies, rigid, model.general_body, model.inertia, y))
     for i in range(bodies):
         kinetic += translational_energy(model.mass[i], at(y, velocity_at(bodies) + 3 * i))
     return (kinetic, gravity_energies(bodies, model.weight, y),
-            springs_energy(bodies, rigid, model.springs, anchors, t, y))
+            springs_energy(model.several, bodies, rigid, model.springs, anchors, t, y))

@@ -15,6 +15,7 @@ import shutil
 import tempfile
 
 import numba
+from numba.core.registry import CPUDispatcher
 
 # The caches of older sources that are kept, for other installations of the package.
 _CACHES_KEPT = 4
@@ -23,7 +24,7 @@ _CACHES_KEPT = 4
 def _digest():
     package = Path(__file__).parent.parent
     sources = sorted(path for room in ('physics', 'integrators')
-                     for path in (package / room).glob('*.py'))
+                     for path in (package / room).rglob('*.py'))
     return hashlib.sha256(b''.join(path.read_bytes() for path in sources)).hexdigest()[:16]
 
 
@@ -106,6 +107,37 @@ def kernel(function):
     return _compiled(function)
 
 
+class _Formula(CPUDispatcher):
+    """A compiled function that compiled functions call; from Python it runs as plain Python."""
+
+    def __call__(self, *arguments):
+        return self.py_func(*arguments)
+
+
 def formula(function):
-    """Compile a function as kernel does, to be inlined wherever it is used."""
-    return _compiled(function, forceinline=True)
+    """
+    Compile a function as kernel does, to be inlined wherever it is used.
+
+    Without what only calls from Python need, which halves the time that it takes to compile.
+    """
+    compiled = _compiled(function, forceinline=True, no_cpython_wrapper=True,
+                         no_cfunc_wrapper=True)
+    if not numba.config.DISABLE_JIT:
+        compiled.__class__ = _Formula
+    return compiled
+
+
+def part(function):
+    """
+    Let a function be written into those that use it, before these are compiled.
+
+    For large functions: each is then compiled once, and not again within every one that uses it.
+    It cannot have branches on None of its own arguments' parts.
+    """
+    if numba.config.DISABLE_JIT:
+        function.py_func = function
+        return function
+    inlined = numba.njit(inline='always', error_model='numpy', nogil=True, fastmath=False,
+                         _nrt=False)(function)
+    inlined.__class__ = _Formula
+    return inlined

@@ -16,11 +16,11 @@ from .inertia import body_inertia, inverse
 from .vector import norm
 from ..scene import Particle, Rigid
 
-# The direction of a spring is r / (L + epsilon). At this fraction of the spring's own lengths
-# epsilon is lost in rounding, to the last bit, wherever L is above a thousandth of them.
+# The direction of a spring is r L / (L^2 + epsilon^2). At this fraction of the spring's own
+# lengths epsilon is lost in rounding, to the last bit, wherever L is above a millionth of them.
 _EPSILON = 2.0 ** -64
-# No epsilon comes from a shorter length [m] than this: 1 / epsilon must be finite.
-_SHORTEST = 1e-200
+# No epsilon comes from a shorter length [m] than this: 1 / epsilon^2 must be finite.
+_SHORTEST = 1e-130
 
 
 class SpringEnds(NamedTuple):
@@ -61,15 +61,19 @@ class Model(NamedTuple):
     """
     What the kernels know of a scene.
 
-    Rigid bodies, `rigid` of them, come before particles. mass: (bodies,) [kg]; round_body: (n,)
-    indices of the bodies whose inertia is the same about every axis, round_inertia: (n,)
+    Rigid bodies, `rigid` of them, come before particles. several: the number of bodies, None for
+    a single one: the kernels then need no loop and no memory. mass: (bodies,) [kg]; round_body:
+    (n,) indices of the bodies whose inertia is the same about every axis, round_inertia: (n,)
     [kg m^2], or None; general_body: (m,) indices of the others, inertia and inverse_inertia:
     (m, 3, 3) in body axes, or None; weight: (bodies, 3) force of gravity in world [N] or None;
-    springs: tuple of SpringGroup or None; air: ModelAir or None.
+    springs: tuple of SpringGroup or None; connections: the number of springs, None for a single
+    one (or none); spring_bodies: (springs, 2) index of the body at P and at Q of each, -1 at
+    an anchor; air: ModelAir or None.
     """
 
     mass: np.ndarray
     rigid: int
+    several: int | None
     round_body: np.ndarray | None
     round_inertia: np.ndarray | None
     general_body: np.ndarray | None
@@ -77,6 +81,8 @@ class Model(NamedTuple):
     inverse_inertia: np.ndarray | None
     weight: np.ndarray | None
     springs: tuple | None
+    connections: int | None
+    spring_bodies: np.ndarray | None
     air: ModelAir | None
 
 
@@ -97,14 +103,18 @@ def build_model(scene):
     if scene.gravity is not None:
         weight = np.array([gravity_force.py_func(body.mass, scene.gravity, scene.down)
                            for body in bodies])
+    springs = _spring_groups(scene, bodies)
     return Model(
         mass=np.array([body.mass for body in bodies]), rigid=len(inertias),
+        several=len(bodies) if len(bodies) > 1 else None,
         round_body=round_body if len(round_body) else None,
         round_inertia=np.array([inertias[i] for i in round_body]) if len(round_body) else None,
         general_body=general_body if len(general_body) else None,
         inertia=matrices,
         inverse_inertia=None if matrices is None else np.array([*map(inverse, matrices)]),
-        weight=weight, springs=_spring_groups(scene, bodies), air=_air(scene, inertias))
+        weight=weight, springs=springs,
+        connections=len(scene.springs) if len(scene.springs) > 1 else None,
+        spring_bodies=_spring_bodies(springs), air=_air(scene, inertias))
 
 
 def _air(scene, inertias):
@@ -129,6 +139,19 @@ def _spring_groups(scene, bodies):
         kind = (*(_end_kind(member) for member, _ in ends), spring.damping is not None)
         groups.setdefault(kind, []).append((spring, *ends))
     return tuple(_group(kind, members, index) for kind, members in groups.items())
+
+
+def _spring_bodies(groups):
+    if groups is None:
+        return None
+    return np.concatenate([np.stack([_bodies_at(group.p), _bodies_at(group.q)], axis=1)
+                           for group in groups])
+
+
+def _bodies_at(ends):
+    if ends.anchor is not None:
+        return np.full_like(ends.anchor, -1)
+    return ends.particle if ends.particle is not None else ends.body
 
 
 def _end_kind(member):

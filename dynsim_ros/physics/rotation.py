@@ -9,6 +9,7 @@ A quaternion q and the matrix R(q) turn components in body axes into components 
 import math
 
 from .jit import formula
+from .lanes import root
 from .vector import cross, dot, norm, scale
 
 
@@ -59,7 +60,7 @@ def quaternion_rate_world(q, omega):
 @formula
 def quaternion_norm(q):
     """Return sqrt(w^2 + x^2 + y^2 + z^2) (sheet, 4.2)."""
-    return math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    return root(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
 
 
 @formula

@@ -7,7 +7,8 @@ All forces act on Q from P, in world [N]; those on P are their opposites.
 """
 
 from .jit import formula
-from .vector import dot, norm, scale
+from .lanes import root
+from .vector import dot, scale
 
 
 @formula
@@ -16,11 +17,12 @@ def length_and_direction(r, epsilon):
     Return L = |r| [m] and the unit vector u to Q from P.
 
     r: (3,) position of Q from P in world [m]; epsilon: [m] keeps u finite (zero) at L = 0: u is
-    r / (L + epsilon). The model's epsilon changes no bit of u unless L is below a thousandth of
-    the spring's own lengths.
+    r L / (L^2 + epsilon^2). The model's epsilon changes no bit of u unless L is below a millionth
+    of the spring's own lengths. The division need not wait for the root.
     """
-    length = norm(r)
-    return length, scale(1.0 / (length + epsilon), r)
+    square = dot(r, r)
+    length = root(square)
+    return length, scale(length * (1.0 / (square + epsilon * epsilon)), r)
 
 
 @formula

@@ -20,6 +20,41 @@ WORKS = ('damper', 'air', 'anchor', 'push')
 
 
 @formula
+def body_count(several):
+    """Return the number of bodies; known when compiled where it is one."""
+    if several is not None:
+        return several
+    return 1
+
+
+@formula
+def rigid_count(several, rigid, round_body, general_body):
+    """Return the number of rigid bodies; known when compiled where there is one body."""
+    if several is not None:
+        return rigid
+    if round_body is not None:
+        return 1
+    if general_body is not None:
+        return 1
+    return 0
+
+
+@formula
+def counts(model):
+    """Return (bodies, rigid bodies)."""
+    return (body_count(model.several),
+            rigid_count(model.several, model.rigid, model.round_body, model.general_body))
+
+
+@formula
+def moving_size(works, bodies, rigid):
+    """Return how much of the state changes: all but the works where these are not counted."""
+    if works is not None:
+        return 6 * bodies + 7 * rigid + 4
+    return 6 * bodies + 7 * rigid
+
+
+@formula
 def velocity_at(bodies):
     """Return where the velocities begin; bodies: number of bodies."""
     return 3 * bodies

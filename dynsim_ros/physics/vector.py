@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vectors of three numbers, as tuples: the compiler keeps them in registers."""
 
-import math
-
 from .jit import formula
+from .lanes import root
 
 
 @formula
@@ -24,9 +23,9 @@ def put(array, i, a):
 @formula
 def accumulate(array, i, a):
     """Add the vector a to array[i], array[i + 1], array[i + 2]."""
-    array[i] += a[0]
-    array[i + 1] += a[1]
-    array[i + 2] += a[2]
+    array[i] = array[i] + a[0]
+    array[i + 1] = array[i + 1] + a[1]
+    array[i + 2] = array[i + 2] + a[2]
 
 
 @formula
@@ -62,7 +61,7 @@ def cross(a, b):
 @formula
 def norm(a):
     """Return the length of a."""
-    return math.sqrt(dot(a, a))
+    return root(dot(a, a))
 
 
 @formula

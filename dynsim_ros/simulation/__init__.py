@@ -3,10 +3,11 @@
 """Runs of a scene: time, commands, snapshots."""
 
 from .commands import CommandError, MoveAnchor, PushBody, SetValues
+from .propagator import Propagator
 from .settings import Settings
 from .simulator import DivergenceError, Simulator
 from .snapshot import Energy, Snapshot
 from .trajectory import Trajectory
 
-__all__ = ['CommandError', 'DivergenceError', 'Energy', 'MoveAnchor', 'PushBody', 'SetValues',
-           'Settings', 'Simulator', 'Snapshot', 'Trajectory']
+__all__ = ['CommandError', 'DivergenceError', 'Energy', 'MoveAnchor', 'Propagator', 'PushBody',
+           'SetValues', 'Settings', 'Simulator', 'Snapshot', 'Trajectory']

@@ -32,7 +32,8 @@ class Anchors:
 
     def rebase(self, time_ns):
         """Let `since` be an instant before the next change."""
-        self.motion = self.motion_at(time_ns)
+        # In place: the kernels hold on to this array.
+        self.motion[:] = self.motion_at(time_ns)
         self.since = time_ns
 
     def next_change(self):

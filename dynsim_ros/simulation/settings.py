@@ -18,16 +18,20 @@ class Settings:
     The settings of a run; all may change at a tick boundary.
 
     rate: ticks per second of simulated time [Hz]; integrator: name of a method; step: its fixed
-    step [s], independent of the ticks; anchor_interpolation: 'hold' (a commanded anchor jumps)
-    or 'linear' (it moves there at constant velocity); wrench_timeout: how long a commanded
-    wrench acts unless replaced [s], 0 for ever.
+    step [s], independent of the ticks; tolerance: of error-controlled methods: the error estimate
+    of every step stays below it, in each body's position [m], velocity [m/s], orientation
+    (quaternion) and angular velocity [rad/s], each over max(1, its size); anchor_interpolation:
+    'hold' (a commanded anchor jumps) or 'linear' (it moves there at constant velocity);
+    wrench_timeout: how long a commanded wrench acts unless replaced [s], 0 for ever.
     """
 
     rate: float = quantity('Hz', 'ticks per second of simulated time', minimum=0.1, maximum=1e4,
                            default=100.0)
     integrator: str = DEFAULT_METHOD
-    step: float = quantity('s', 'fixed step of the integrator', minimum=1e-7, maximum=1.0,
+    step: float = quantity('s', 'step of methods of fixed step', minimum=1e-7, maximum=1.0,
                            default=1e-3)
+    tolerance: float = quantity('', 'error that a step of an error-controlled method may have',
+                                minimum=1e-14, maximum=0.1, default=1e-9)
     anchor_interpolation: str = 'hold'
     wrench_timeout: float = quantity('s', 'how long a commanded wrench acts unless replaced, '
                                      '0 = until replaced', minimum=0.0, maximum=1e6, default=0.5)
@@ -66,4 +70,4 @@ def setting_description(name):
                    'anchor_interpolation': 'how a commanded anchor gets to its new position'}
         return f'{meaning[name]}: one of ' + ', '.join(CHOICES[name])
     known: Quantity = setting_quantities()[name]
-    return f'{known.description} [{known.unit}]'
+    return known.description + (f' [{known.unit}]' if known.unit else '')

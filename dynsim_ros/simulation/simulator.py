@@ -13,7 +13,8 @@ from .layout import Layout
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
 from .trajectory import Trajectory
-from ..integrators import method_named, SCRATCH_ROWS
+from ..integrators import IntegrationError, new_steps
+from ..physics.drive import Drive
 from ..physics.energies import energies
 from ..physics.model import build_model
 from ..physics.state import initial_state, WORKS
@@ -53,21 +54,40 @@ class Simulator:
         self.time_ns = 0
         self.tick = 0
         self.failure = None
-        self.normalisation_removed = 0.0
         self._build()
         self.layout = Layout(self.scene)
-        self._scratch = np.empty((SCRATCH_ROWS, self.layout.size))
         self._state = initial_state(self.scene, self._model)
         self._pushes = np.zeros_like(self._state)
         self._push_ends = {}
         self._anchors = Anchors(self.scene)
-        self._grid_ns = 0
-        self._grid_state = self._state.copy()
         self._reference_energy = self._energy()
 
     def _build(self):
         self._model = build_model(self.scene)
-        self._advance = method_named(self.settings.integrator).advance
+        self._steps = None
+        self._is_begun = False
+
+    def _begin_steps(self):
+        """Let the integration begin at the present instant, under what is in force."""
+        if self._steps is None:
+            # Anchors can be commanded to move, and bodies be pushed, at any time: without a pause
+            # for compiling.
+            drive = Drive(self._anchors.motion, True if self.scene.anchors else None,
+                          self._pushes, True)
+            self._steps = new_steps(self.settings, self._model, drive, self.layout.size)
+        self._anchors.rebase(self.time_ns)
+        self._steps.begin(self.time_ns, self._state)
+        self._is_begun = True
+
+    @property
+    def normalisation_removed(self):
+        """Return the sum of what normalising the quaternions removed since the last change."""
+        return 0.0 if self._steps is None else self._steps.removed
+
+    @property
+    def shortfall(self):
+        """Return, in words, what keeps the method from its tolerance; None where nothing does."""
+        return None if self._steps is None else self._steps.shortfall
 
     @property
     def time(self):
@@ -82,7 +102,9 @@ class Simulator:
 
     def prepare(self):
         """Compile, or load from the disk cache, all that a tick of this scene needs."""
-        self._integrated(self._state, self._grid_ns, 0, 0)
+        if not self._is_begun:
+            self._begin_steps()
+        self._steps.prepare()
         snapshot = self.snapshot()
         return snapshot.net_forces, snapshot.energy
 
@@ -142,26 +164,21 @@ class Simulator:
         return min(changes, default=None)
 
     def _integrate_to(self, end):
-        """Take the steps of the grid up to an instant, and the shorter one that remains."""
-        step = self.settings.step_ns
-        steps, rest = divmod(end - self._grid_ns, step)
-        grid_state, removed = self._integrated(self._grid_state, self._grid_ns, steps, step)
-        grid_ns = self._grid_ns + steps * step
-        state = grid_state
-        if rest:
-            state, _ = self._integrated(grid_state, grid_ns, 1, rest)
+        """Take steps until an instant has been reached or passed."""
+        if not self._is_begun:
+            self._begin_steps()
+        try:
+            state = self._steps.state_at(end, self._next_change())
+        except IntegrationError as error:
+            self.failure = (f'the motion cannot be computed between {self.time:.9g} s and '
+                            f'{end / SECOND:.9g} s of simulated time: {error}; the state of '
+                            f'{self.time:.9g} s is kept')
+            raise DivergenceError(self.failure) from error
         if not _is_finite(state):
             self.failure = self._describe_failure(state, end)
             raise DivergenceError(self.failure)
-        self._grid_state, self._grid_ns, self._state = grid_state, grid_ns, state
-        self.normalisation_removed += removed
+        self._state = state
         self.time_ns = end
-
-    def _integrated(self, state, start_ns, steps, step):
-        state = state.copy()
-        removed = self._advance(self._model, self._anchors.motion, self._pushes,
-                                start_ns - self._anchors.since, step, steps, state, self._scratch)
-        return state, removed
 
     def _describe_failure(self, state, end):
         layout = self.layout
@@ -176,8 +193,9 @@ class Simulator:
 
     def _begin_here(self):
         """Let a step end at the present instant: what follows is under something new."""
-        self._grid_ns = self.time_ns
-        self._grid_state = self._state.copy()
+        if self._is_begun:
+            self._state = self._steps.cut(self.time_ns)
+            self._is_begun = False
         self._anchors.rebase(self.time_ns)
 
     def _move_anchor(self, command):
@@ -192,7 +210,6 @@ class Simulator:
         """Count the energy that a jump of an anchor gives to its springs as work of the anchor."""
         place = self.layout.work.start + WORKS.index('anchor')
         self._state[place] += work
-        self._grid_state[place] += work
 
     def _push(self, command):
         self._begin_here()

@@ -119,7 +119,7 @@ def test_a_name_that_is_no_file_name_stays_in_the_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'odd.yaml').write_text(
         "name: '../../over there'\nbodies: {p: {shape: particle, mass: 1}}")
-    assert main(['./odd.yaml', '-d', '0.1', '-q']) == 0
+    assert main(['./odd.yaml', '-d', '0.1', '-q', '--set', 'integrator=rk4']) == 0
     (path,) = tmp_path.rglob('*.mcap')
     assert path.parent == tmp_path / 'runs' and path.name.startswith('_over_there_')
 

@@ -7,8 +7,8 @@ from dynsim_ros.scene import SceneError
 import pytest
 
 
-def test_rk4_is_the_default():
-    assert DEFAULT_METHOD == 'rk4'
+def test_auto_is_the_default():
+    assert DEFAULT_METHOD == 'auto'
 
 
 @pytest.mark.parametrize('name', METHODS)
@@ -19,7 +19,7 @@ def test_by_name(name):
 
 @pytest.mark.parametrize('name, hint', [
     ('rk5', "did you mean 'rk4'?"), ('explicit-euler', "did you mean 'explicit_euler'?"),
-    ('zzz', 'known are: explicit_euler, explicit_euler_axis_angle, rk4, semi_implicit_euler'),
+    ('zzz', 'known are: ' + ', '.join(sorted(METHODS))),
     (4, "did you mean 'rk4'?"), (None, 'known are: '), (['rk4'], "'rk4'")])
 def test_an_unknown_name_is_one_line_with_the_nearest_known(name, hint):
     with pytest.raises(SceneError) as caught:

@@ -86,4 +86,5 @@ def test_parameter_file_has_the_form_ros_reads():
     parameters = yaml.safe_load((ROOT / 'config' / 'dynsim.yaml').read_text(encoding='utf-8'))
     assert list(parameters) == ['/**']
     assert set(parameters['/**']['ros__parameters']) == {
-        'scene', 'integrator', 'rate', 'real_time_factor', 'duration', 'publish_clock', 'record'}
+        'scene', 'integrator', 'tolerance', 'rate', 'real_time_factor', 'duration',
+        'publish_clock', 'record'}

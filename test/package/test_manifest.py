@@ -11,8 +11,8 @@ import pytest
 from tree import imported_modules, python_files, ROOT
 
 # modules that come with a package of another name in rosdep
-KEYS = {'mcap': 'mcap-ros2-support', 'numba': 'python3-numba', 'numpy': 'python3-numpy',
-        'yaml': 'python3-yaml', 'zstandard': 'mcap-ros2-support'}
+KEYS = {'llvmlite': 'python3-numba', 'mcap': 'mcap-ros2-support', 'numba': 'python3-numba',
+        'numpy': 'python3-numpy', 'yaml': 'python3-yaml', 'zstandard': 'mcap-ros2-support'}
 
 
 @pytest.fixture(scope='module')

@@ -71,11 +71,17 @@ def test_scenes_and_what_is_in_them():
         assert set(members) == {member.name for member in load_scene(name).members}, name
 
 
-def test_integrators_with_order_and_error():
-    assert column('integrator') == {name: str(method.order) for name, method in METHODS.items()}
-    for name, error in column('integrator', 2).items():
-        run = Simulator(load_scene('sphere_on_spring'), integrator=name).run(10.0)
-        assert f'{float(f"{abs(run.imbalance()).max():.0e}"):g} J' == error, name
+def test_integrators_with_order():
+    assert column('integrator') == {
+        name: '–' if method.order is None else str(method.order)
+        for name, method in METHODS.items()}
+
+
+@pytest.mark.parametrize('name', METHODS)
+def test_energy_error_of_an_integrator(name):
+    run = Simulator(load_scene('sphere_on_spring'), integrator=name).run(10.0)
+    error = f'{float(f"{abs(run.imbalance()).max():.0e}"):g} J'
+    assert column('integrator', 2)[name] == error
 
 
 def test_energies_in_order():

@@ -9,6 +9,7 @@ same source then takes no time to compile.
 
 import json
 
+from dynsim_ros.physics.drive import Drive
 from dynsim_ros.physics.energies import energies
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.motion import rates, wrenches
@@ -96,7 +97,7 @@ def compare(scene, y, motion, random):
             pushes[layout.angular_velocity(body)] = given[body][1]
     reference = NewtonEuler(scene, given)
     out, parts = np.full(layout.size, np.nan), np.zeros((4, layout.size))
-    rates(model, anchors, pushes, t, y, out)
+    rates(model, Drive(anchors, True, pushes, True), t, y, out)
     wrenches(model, anchors, t, y, parts)
     loads = reference.loads(t, reference.unpacked(reference.packed(motion)))
     found = {}

@@ -8,12 +8,17 @@ from pathlib import Path
 import shutil
 import sys
 
-from dynsim_ros.integrators import METHODS
+from dynsim_ros.integrators import adaptive, METHODS
+from dynsim_ros.physics.energies import energies
+from dynsim_ros.physics.motion import rates, wrenches
 from plain import environment
 import pytest
 from tree import output_of, ROOT
 
 SCRIPT = Path(__file__).with_name('use_kernels.py')
+KERNELS = {name: method.advance for name, method in METHODS.items() if method.advance is not None}
+KERNELS |= {'adaptive': adaptive.advance, 'prepare': adaptive.prepare, 'energies': energies,
+            'wrenches': wrenches, 'rates': rates}
 
 
 def use_kernels(*arguments, script=SCRIPT, **variables):
@@ -91,6 +96,6 @@ def test_read_only_installation_is_no_error_and_is_not_written_to(tmp_path):
             folder.chmod(0o755)
 
 
-@pytest.mark.parametrize('method', METHODS)
-def test_fastmath_is_off(method):
-    assert METHODS[method].advance.targetoptions['fastmath'] is False
+@pytest.mark.parametrize('name', KERNELS)
+def test_fastmath_is_off(name):
+    assert KERNELS[name].targetoptions['fastmath'] is False

@@ -206,7 +206,7 @@ def test_the_scene_and_the_parameters_are_inside(run, tmp_path):
     values = {name: json.loads(value) for name, value in run.metadata['parameters'].items()}
     assert values['gravity'] == 9.81 and values['sphere.position'] == [0.3, 0.0, 1.2]
     assert (values['integrator'], values['rate'], values['scene']) == (
-        'rk4', 100.0, 'sphere_on_spring')
+        'auto', 100.0, 'sphere_on_spring')
     assert values['real_time_factor'] == 1.0
     assert run.metadata['dynsim_ros']['node'] == '/dynsim'
     assert run.metadata['dynsim_ros']['epoch'] == '0'

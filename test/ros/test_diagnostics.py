@@ -55,7 +55,7 @@ def test_the_run(arrays):
     seconds = float(told['simulated time [s]'])
     assert seconds == nanoseconds(arrays[2].header.stamp) / 1e9
     assert int(told['tick']) == round(seconds * 100)
-    assert told['epoch'] == '0' and told['integrator'] == 'rk4'
+    assert told['epoch'] == '0' and told['integrator'] == 'auto'
     assert 50.0 < float(told['rate achieved [Hz]']) < 130.0
     assert 0.5 < float(told['real-time factor']) < 1.3
     assert int(told['missed ticks']) >= 0 and int(told['late ticks']) >= 0

@@ -15,7 +15,7 @@ REASON = "the motion of 'sphere' is no longer finite"
 
 @pytest.fixture(scope='module')
 def node(start):
-    return start('-p', 'record.enable:=true')
+    return start('-p', 'record.enable:=true', '-p', 'integrator:=rk4')
 
 
 @pytest.fixture(scope='module')

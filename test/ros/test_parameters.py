@@ -18,7 +18,7 @@ QUANTITIES = {
     'spring.damping': 'N s/m', 'spring.natural_length': 'm'}
 INITIAL = {'sphere.position': 'm', 'sphere.velocity': 'm/s', 'sphere.orientation': '',
            'sphere.angular_velocity': 'rad/s'}
-SETTINGS = {'rate': 'Hz', 'step': 's', 'wrench_timeout': 's'}
+SETTINGS = {'rate': 'Hz', 'step': 's', 'tolerance': '', 'wrench_timeout': 's'}
 OTHERS = {'integrator', 'anchor_interpolation', 'scene', 'real_time_factor', 'publish_clock',
           'duration', 'record.enable', 'record.directory', 'record.compression', 'use_sim_time'}
 
@@ -131,7 +131,7 @@ def test_rate_changes_the_distance_of_stamps(client):
 
 
 @pytest.mark.parametrize('method', ['explicit_euler', 'explicit_euler_axis_angle',
-                                    'semi_implicit_euler', 'rk4'])
+                                    'semi_implicit_euler', 'leapfrog', 'rk4', 'auto'])
 def test_integrator_can_change_on_the_way(client, method):
     client.steps(1, 'sphere/pose')
     assert client.set_group({'integrator': method, 'step': 1e-4}).successful

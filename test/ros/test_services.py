@@ -113,7 +113,7 @@ def test_reset_begins_anew(client):
     assert client.last('epoch').data == epoch + 1
     assert stamps(client.messages('sphere/pose')) == [0]
     assert client.get('gravity', 'sphere.mass', 'integrator', 'rate', 'step') == [
-        9.81, 1.0, 'rk4', 100.0, 0.001]
+        9.81, 1.0, 'auto', 100.0, 0.001]
     assert list(client.get('hand.position')[0]) == [0.0, 0.0, 2.0]
     message, values = told(client)
     assert (message, values['epoch'], values['tick']) == ('paused', str(epoch + 1), '0')

@@ -140,8 +140,8 @@ OTHERS = {
 
 @pytest.fixture(scope='module')
 def others(start):
-    return {scene: start('-p', f'scene:={scene}', '-r', f'__ns:=/{scene}',
-                         name=f'/{scene}/dynsim') for scene in OTHERS}
+    return {scene: start('-p', f'scene:={scene}', '-p', 'integrator:=rk4',
+                         '-r', f'__ns:=/{scene}', name=f'/{scene}/dynsim') for scene in OTHERS}
 
 
 @pytest.mark.parametrize('scene', OTHERS)

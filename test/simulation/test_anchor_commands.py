@@ -70,9 +70,11 @@ def test_velocity_of_the_anchor_enters_the_damper():
     np.testing.assert_allclose(force, 0.5 * (u @ (0.3, -0.2, 0.7)) * u, rtol=1e-14)
 
 
-def test_commanded_motion_agrees_with_newton_euler():
+@pytest.mark.parametrize('method', [{'integrator': 'rk4', 'step': 5e-5},
+                                    {'integrator': 'auto', 'tolerance': 1e-12}])
+def test_commanded_motion_agrees_with_newton_euler(method):
     """Two linear moves and the rest after them, each piece by DOP853."""
-    simulator = Simulator(SCENE, anchor_interpolation='linear', step=5e-5)
+    simulator = Simulator(SCENE, anchor_interpolation='linear', **method)
     for target in ((0.1, 0, 2.05), (0.1, 0.1, 1.95), (0.1, 0.1, 1.95)):
         start = simulator.snapshot()
         simulator.apply(MoveAnchor('hand', target))

@@ -41,7 +41,7 @@ def momenta(snapshot):
 
 @pytest.fixture(scope='module', params=[SCENE, DAMPED], ids=['undamped', 'damped'])
 def run(request):
-    return Simulator(request.param, step=2e-4, rate=20).run(2.0)
+    return Simulator(request.param, integrator='rk4', step=2e-4, rate=20).run(2.0)
 
 
 def test_momentum_and_angular_momentum_are_conserved(run):
@@ -74,7 +74,7 @@ def test_energy_is_conserved_without_dampers_and_falls_with_them(run):
 
 @pytest.mark.parametrize('scene', [SCENE, DAMPED], ids=['undamped', 'damped'])
 def test_motion_agrees_with_newton_euler(scene):
-    simulator = Simulator(scene, step=1e-4)
+    simulator = Simulator(scene, integrator='rk4', step=1e-4)
     simulator.advance(1_000_000_000)
     end = simulator.snapshot()
     for name, (r, v, matrix, omega) in NewtonEuler(scene).solve([1.0])[0].items():

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 
-def diverged(**settings):
-    simulator = Simulator(load_scene('sphere_on_spring'), step=0.3, **settings)
+def diverged(method='rk4'):
+    simulator = Simulator(load_scene('sphere_on_spring'), integrator=method, step=0.3)
     snapshots = [simulator.snapshot()]
     with pytest.raises(DivergenceError) as caught:
         while len(snapshots) < 10000:
@@ -21,7 +21,7 @@ def diverged(**settings):
 @pytest.mark.parametrize('method', ['rk4', 'explicit_euler'])
 def test_nothing_that_is_seen_before_is_not_finite(method):
     """Neither states nor what is computed from them, however large they grow."""
-    simulator, snapshots, _ = diverged(integrator=method)
+    simulator, snapshots, _ = diverged(method)
     assert simulator.snapshot().time_ns == snapshots[-1].time_ns
     assert simulator.snapshot().state.tobytes() == snapshots[-1].state.tobytes()
     with np.errstate(over='raise', invalid='raise'):
@@ -59,4 +59,4 @@ def test_it_does_not_go_on_until_reset():
 def test_a_stiff_spring_says_so_too():
     scene = with_values(load_scene('two_anchors'), {'left_spring.stiffness': 1e12})
     with pytest.raises(DivergenceError, match='smaller stiffness, damping or drag'):
-        Simulator(scene).run(1.0)
+        Simulator(scene, integrator='rk4').run(1.0)

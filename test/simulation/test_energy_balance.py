@@ -14,7 +14,8 @@ WIND = {'air.velocity': (2, 0, 1), 'air.angular_velocity': (0, 3, 0)}
 
 
 def run(changes, duration=2.0, step=2e-4):
-    return Simulator(with_values(SCENE, changes), step=step, rate=1000).run(duration)
+    return Simulator(with_values(SCENE, changes), integrator='rk4', step=step,
+                     rate=1000).run(duration)
 
 
 def works(trajectory):
@@ -71,7 +72,8 @@ def test_work_of_a_moving_anchor_alone():
 
 def test_work_of_a_push_alone():
     """A constant force does F . (r2 - r1)."""
-    simulator = Simulator(with_values(SCENE, LOSSLESS), step=2e-4, wrench_timeout=0)
+    simulator = Simulator(with_values(SCENE, LOSSLESS), integrator='rk4', step=2e-4,
+                          wrench_timeout=0)
     force = np.array([1.0, -2.0, 0.5])
     before = simulator.snapshot()
     simulator.apply(PushBody('sphere', force))
@@ -82,34 +84,36 @@ def test_work_of_a_push_alone():
     assert after.energy.total - before.energy.total == pytest.approx(force @ way, abs=1e-9)
 
 
-def test_a_jump_of_an_anchor_is_work_of_the_anchor():
-    simulator = Simulator(SCENE)
+@pytest.mark.parametrize('method, near', [('rk4', 1e-14), ('auto', 1e-9)])
+def test_a_jump_of_an_anchor_is_work_of_the_anchor(method, near):
+    simulator = Simulator(SCENE, integrator=method)
     simulator.run(0.5)
     before = simulator.snapshot().energy
     simulator.apply(MoveAnchor('hand', (0.2, 0, 2.1)))
     after = simulator.snapshot().energy
     assert abs(after.total - before.total) > 0.1
     assert after.work['anchor'] - before.work['anchor'] == pytest.approx(
-        after.total - before.total, rel=1e-12)
-    assert after.imbalance == pytest.approx(before.imbalance, abs=1e-14)
+        after.total - before.total, rel=1e-12, abs=near)
+    assert after.imbalance == pytest.approx(before.imbalance, abs=near)
 
 
-def test_a_changed_quantity_is_no_work_and_no_imbalance():
-    simulator = Simulator(SCENE, step=2e-4)
+@pytest.mark.parametrize('method, near', [('rk4', 0.0), ('auto', 1e-9)])
+def test_a_changed_quantity_is_no_work_and_no_imbalance(method, near):
+    simulator = Simulator(SCENE, integrator=method, step=2e-4)
     simulator.run(0.5)
     before = simulator.snapshot().energy
     simulator.apply(SetValues({'spring.stiffness': 300, 'sphere.mass': 3}))
     after = simulator.snapshot().energy
     assert after.total - before.total > 1
-    assert after.work == before.work
-    assert after.imbalance == pytest.approx(before.imbalance, abs=1e-13)
+    assert after.work == pytest.approx(before.work, rel=0.0, abs=near)
+    assert after.imbalance == pytest.approx(before.imbalance, abs=1e-13 + near)
 
 
 def test_imbalance_is_the_error_of_the_integration_and_falls_with_the_step():
     """All at once, through commands; the balance is of the order of the method, 4."""
     def imbalance(step):
         simulator = Simulator(with_values(SCENE, {**WIND, 'hand.velocity': (0.1, 0, 0)}),
-                              step=step, anchor_interpolation='linear')
+                              integrator='rk4', step=step, anchor_interpolation='linear')
         simulator.run(0.5)
         simulator.apply(PushBody('sphere', (3, 0, 1), (0.001, 0.002, 0)))
         simulator.run(0.3)

@@ -17,7 +17,7 @@ def ball(**values):
 
 
 def run(scene):
-    return Simulator(scene, step=2e-4, rate=50).run(2.0)
+    return Simulator(scene, integrator='rk4', step=2e-4, rate=50).run(2.0)
 
 
 def test_ballistic_flight_in_wind():

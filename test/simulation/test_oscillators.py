@@ -9,6 +9,9 @@ import pytest
 
 STIFFNESS, MASS = 50.0, 2.0
 OMEGA = np.sqrt(STIFFNESS / MASS)
+by_both_methods = pytest.mark.parametrize('method', [
+    {'integrator': 'rk4', 'step': 5e-5}, {'integrator': 'auto', 'tolerance': 1e-12}],
+    ids=['rk4', 'auto'])
 
 
 def hung_at_its_centre(**values):
@@ -34,51 +37,56 @@ def damped(x, v, damping, t):
     return terms.sum(axis=0).real, (roots[:, None] * terms).sum(axis=0).real
 
 
+@by_both_methods
 @pytest.mark.parametrize('damping', [0.0, 4.0, 20.0, 50.0],
                          ids=['undamped', 'underdamped', 'critical', 'overdamped'])
-def test_damped_oscillator(damping):
+def test_damped_oscillator(damping, method):
     assert (damping ** 2 > 4 * STIFFNESS * MASS) is (damping == 50.0)
     # it hangs: at rest the length is the natural length and m g / k
     natural, rest = 1.0, 1.0 + MASS * 9.81 / STIFFNESS
     scene = hung_at_its_centre(gravity=9.81, spring__damping=damping,
                                spring__natural_length=natural,
                                sphere__position=(0, 0, -rest - 0.2), sphere__velocity=(0, 0, 1))
-    run = Simulator(scene, step=5e-5, rate=50).run(3.0)
+    run = Simulator(scene, rate=50, **method).run(3.0)
     x, v = damped(-0.2, 1.0, damping, run.time)
     np.testing.assert_allclose(run.position('sphere')[:, 2], x - rest, atol=1e-12)
     np.testing.assert_allclose(run.velocity('sphere')[:, 2], v, atol=5e-12)
     np.testing.assert_array_equal(run.position('sphere')[:, :2], 0.0)
 
 
-def test_zero_length_spring_in_the_plane_runs_on_an_ellipse():
+@by_both_methods
+def test_zero_length_spring_in_the_plane_runs_on_an_ellipse(method):
     r, v = np.array([0.4, 0.0, 0.1]), np.array([0.3, 1.5, -0.2])
     scene = hung_at_its_centre(spring__natural_length=0, sphere__position=r, sphere__velocity=v)
-    run = Simulator(scene, step=5e-5, rate=50).run(3.0)
+    run = Simulator(scene, rate=50, **method).run(3.0)
     phase = OMEGA * run.time[:, None]
     np.testing.assert_allclose(run.position('sphere'),
                                r * np.cos(phase) + v / OMEGA * np.sin(phase), atol=1e-12)
 
 
-def test_zero_length_spring_through_length_zero():
+@by_both_methods
+def test_zero_length_spring_through_length_zero(method):
     """The sphere passes through the anchor twice a period, once exactly."""
     scene = hung_at_its_centre(spring__natural_length=0, sphere__position=(0, 0, 0),
                                sphere__velocity=(0, 0, 2))
-    run = Simulator(scene, step=5e-5, rate=50).run(3.0)
+    run = Simulator(scene, rate=50, **method).run(3.0)
     np.testing.assert_allclose(run.position('sphere')[:, 2],
                                2 / OMEGA * np.sin(OMEGA * run.time), atol=1e-12)
 
 
-def test_body_at_the_anchor_of_a_spring_of_some_length_stays_finite():
+@by_both_methods
+def test_body_at_the_anchor_of_a_spring_of_some_length_stays_finite(method):
     """There the direction of the force is undefined; with L + epsilon there is no force."""
     scene = hung_at_its_centre(spring__natural_length=0.5, spring__damping=1,
                                sphere__position=(0, 0, 0), sphere__velocity=(0, 0, 0))
-    run = Simulator(scene).run(0.1)
+    run = Simulator(scene, **method).run(0.1)
     np.testing.assert_array_equal(run.position('sphere'), 0.0)
     assert run.snapshots[0].energy.spring == pytest.approx(0.5 * STIFFNESS * 0.25)
 
 
-def test_oscillator_does_not_turn_when_held_at_its_centre():
+@by_both_methods
+def test_oscillator_does_not_turn_when_held_at_its_centre(method):
     scene = hung_at_its_centre(sphere__position=(0.3, 0, -1))
-    run = Simulator(scene).run(1.0)
+    run = Simulator(scene, **method).run(1.0)
     np.testing.assert_array_equal(run.angular_velocity('sphere'),
                                   np.tile(run.angular_velocity('sphere')[0], (101, 1)))

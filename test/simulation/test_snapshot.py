@@ -13,7 +13,7 @@ import pytest
 @pytest.mark.parametrize('name', scene_names())
 def test_net_wrench_is_the_sum_and_agrees_with_newton_euler(name):
     scene = load_scene(name)
-    simulator = Simulator(scene)
+    simulator = Simulator(scene, integrator='rk4')
     simulator.run(0.2)
     now, reference = simulator.snapshot(), NewtonEuler(scene)
     motion = {body.name: [now.position(body.name), now.velocity(body.name)]

@@ -23,7 +23,7 @@ def test_tick_is_the_nearest_integer_number_of_nanoseconds(rate, tick):
 
 @pytest.mark.parametrize('rate', [333, 29.97])
 def test_ticks_never_accumulate_rounding(rate):
-    simulator = Simulator(BARE, rate=rate)
+    simulator = Simulator(BARE, integrator='rk4', rate=rate)
     tick = simulator.settings.tick_ns
     for number in range(1, 2001):
         simulator.advance_tick()
@@ -32,7 +32,7 @@ def test_ticks_never_accumulate_rounding(rate):
 
 
 def test_free_motion_is_on_time():
-    simulator = Simulator(BARE, rate=333)
+    simulator = Simulator(BARE, integrator='rk4', rate=333)
     for _ in range(333):
         simulator.advance_tick()
     np.testing.assert_allclose(simulator.snapshot().position('p'),
@@ -40,17 +40,17 @@ def test_free_motion_is_on_time():
 
 
 def test_run_ends_at_the_first_tick_at_or_after_its_duration():
-    simulator = Simulator(BARE, rate=100)
+    simulator = Simulator(BARE, integrator='rk4', rate=100)
     run = simulator.run(0.095)
     assert simulator.time_ns == 100_000_000
     assert len(run.snapshots) == 11
     assert run.time[-1] == 0.1
 
 
-def commanded(rate, step):
+def commanded(rate, **method):
     """Return snapshots at 1 s and 2 s; commands at 0.5 s, 1 s and 1.25 s, sampled at a rate."""
-    simulator = Simulator(MOVING, step=step, wrench_timeout=0.1234567,
-                          anchor_interpolation='linear')
+    simulator = Simulator(MOVING, wrench_timeout=0.1234567, anchor_interpolation='linear',
+                          **method)
     period = Settings(rate=rate).tick_ns
     found = []
     for second, command in [(0.5, PushBody('sphere', (1, 2, 3), (0, 0.001, 0))),
@@ -66,10 +66,11 @@ def commanded(rate, step):
     return found
 
 
-def test_ticks_of_another_rate_change_no_bit():
+@pytest.mark.parametrize('method', ['rk4', 'auto'])
+def test_ticks_of_another_rate_change_no_bit(method):
     found = []
     for rate, ticks in ((1, 1), (100, 100), (1000, 1000)):
-        simulator = Simulator(MOVING, rate=rate)
+        simulator = Simulator(MOVING, integrator=method, rate=rate)
         for _ in range(ticks):
             simulator.advance_tick()
         found.append(simulator.snapshot())
@@ -77,10 +78,12 @@ def test_ticks_of_another_rate_change_no_bit():
     assert len({snapshot.state.tobytes() for snapshot in found}) == 1
 
 
-@pytest.mark.parametrize('step', [1e-3, 7.77e-4, 0.013])
-def test_rate_of_sampling_changes_no_bit(step):
+@pytest.mark.parametrize('method', [
+    *({'integrator': 'rk4', 'step': step} for step in (1e-3, 7.77e-4, 0.013)),
+    *({'integrator': 'auto', 'tolerance': tolerance} for tolerance in (1e-9, 1e-4))])
+def test_rate_of_sampling_changes_no_bit(method):
     """Nor of the anchor, of the works or of the energies; the steps lie on a grid of their own."""
-    runs = [commanded(rate, step) for rate in RATES]
+    runs = [commanded(rate, **method) for rate in RATES]
     for run in runs[1:]:
         for one, other in zip(runs[0], run):
             assert one.time_ns == other.time_ns
@@ -94,7 +97,7 @@ def test_a_sample_off_the_grid_is_as_exact_as_one_on_it():
     """0.5 ms after a point of the grid, against steps that end there."""
     samples = []
     for step in (1e-3, 5e-4):
-        simulator = Simulator(MOVING, step=step)
+        simulator = Simulator(MOVING, integrator='rk4', step=step)
         simulator.advance(300_500_000)
         samples.append(simulator.snapshot().position('sphere'))
     np.testing.assert_allclose(samples[0], samples[1], atol=1e-8)

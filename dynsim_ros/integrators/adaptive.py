@@ -1,0 +1,351 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The loop of all methods that choose their own steps.
+
+Every method takes a step from y, with the rate of y where it needs it, and estimates its error;
+the loop accepts or repeats it, and chooses the next step. Steps lie where the method puts them;
+the state at an instant within a step comes from the method's dense output.
+
+The clock is an array of float64, see BASE to LARGEST; times in it are [s] since BASE, a whole
+number of seconds after the beginning, so that they keep their last bits in the longest run.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .dense_output import build_dense, write_states
+from .dop853 import dop853
+from .error_norm import error_norm
+from .gragg import gragg
+from .lane_schedule import Schedule
+from .memory import lane_row, load, number_row, store
+from .radau import radau
+from .stiff import stiff
+from .stormer import stormer
+from ..physics.jit import formula, kernel
+from ..physics.lanes import COUNT
+from ..physics.motion import rates
+from ..physics.state import counts, moving_size, normalise
+
+# The clock: whole seconds, end and length of the last step, length of the next one,
+# logarithm of the last error estimate over the tolerance, the largest accepted such ratio, whether
+# the dense output of the last step is built; for how many steps the watch has seen what it waits
+# for, and the steps have become shorter; what rounding leaves of the error estimate of a step.
+BASE, END, STEP, NEXT, LAST_ERROR, LARGEST, DENSE, WATCHED, SHRUNK, FLOOR = range(10)
+CLOCK_SIZE = 10
+# What is counted: steps, rejected steps, evaluations of the right-hand side in a row, steps that
+# were accepted at the limit of rounding.
+STEPS, REJECTED, EVALUATIONS, ROUNDED = range(4)
+COUNTS_SIZE = 4
+
+REACHED, BUDGET_SPENT, STEP_TOO_SHORT, SWITCH = range(4)
+
+_LOG_SAFETY, _LOG_AT_ONCE = math.log(0.9), math.log(0.6)
+_SLOWEST, _FASTEST = 0.1, 5.0
+_LONGEST = 100.0
+# Of the time: a step that is not longer than some units of its last place is none.
+_SHORTEST = 1e-15
+# Steps that become shorter so many times in a row do so because of rounding.
+_PERSISTENCE = 20.0
+# So many steps in a row convince the watch that they are long, or short.
+_PATIENCE, _SHORT_PATIENCE = 10.0, 3.0
+# Units of the last place that rounding leaves of an error estimate.
+_UNITS = 20.0 * 2.0 ** -52
+# The tolerance of a step is this part of the one that is asked for, because errors add up.
+MARGIN = 0.02
+# Rounding makes no error estimate larger than this.
+_ROUNDING = 1e-8
+
+
+class Tableaux(NamedTuple):
+    """The data of the method in use, None for the others; dense: table of its dense output."""
+
+    gragg: Schedule | None
+    stormer: Schedule | None
+    stiff: Schedule | None
+    dop853: np.ndarray | None
+    radau: np.ndarray | None
+    dense: np.ndarray
+
+
+class Grid(NamedTuple):
+    """
+    Instants at which states are wanted; None where only the end of a step is.
+
+    first, period: [ns] since the beginning; states: (n, size), filled; done: (1,) how many are.
+    """
+
+    first: int
+    period: int
+    states: np.ndarray
+    done: np.ndarray
+
+
+@formula
+def attempt(gragg_plan, stormer_plan, stiff_plan, dop853_data, radau_data, model, drive, size, t,
+            h, y, rate, tolerance, memory, y_new, error):
+    """Take one step with the method that is there; return how many evaluations in a row."""
+    if gragg_plan is not None:
+        gragg(model, drive, gragg_plan, size, t, h, y, rate, memory, y_new, error)
+        return gragg_plan.rows
+    if stormer_plan is not None:
+        stormer(model, drive, stormer_plan, size, t, h, y, rate, memory, y_new, error)
+        return stormer_plan.rows
+    if stiff_plan is not None:
+        stiff(model, drive, stiff_plan, size, t, h, y, memory, y_new, error)
+        return stiff_plan.rows
+    if dop853_data is not None:
+        dop853(model, drive, dop853_data, size, t, h, y, rate, memory, y_new, error)
+        return 11
+    if radau_data is not None:
+        return radau(model, drive, radau_data, size, t, h, y, rate, tolerance, memory, y_new,
+                     error)
+    return 0
+
+
+@formula
+def step_factor(logarithm, last, power):
+    """
+    Return by how much the next step may be longer: Gustafsson's PI control.
+
+    logarithm, last: of the error estimate over the tolerance, of this step and of the one before
+    it. Where the error is far below the tolerance the step goes where it should be at once.
+    """
+    return math.exp(max(_LOG_SAFETY - (0.5 * logarithm - 0.2 * last) / power,
+                        _LOG_AT_ONCE - logarithm / power))
+
+
+@formula
+def is_rounding(change, change_of_step, power, error):
+    """
+    Return whether an error estimate is what rounding makes of it, so that it can get no smaller.
+
+    change, change_of_step: logarithms of the ratios of this estimate and step to those of the
+    attempt before; a step that becomes shorter should lower the estimate by its power.
+    """
+    return error < _ROUNDING and change > 0.3 * power * change_of_step
+
+
+@formula
+def watched(watch, step, seen):
+    """Return for how many steps in a row the step has been beyond the watch."""
+    if watch > 0.0 and step >= watch or watch < 0.0 and step <= -watch:
+        return seen + 1.0
+    return 0.0
+
+
+@formula
+def place_in_step(grid, number, clock):
+    """Return where an instant of the grid lies in the last step: -1: start, 1: end."""
+    instant = grid.first + number * grid.period - np.int64(clock[BASE]) * 1000000000
+    return 1.0 + 2.0 * (instant * 1e-9 - clock[END]) / clock[STEP]
+
+
+@formula
+def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y, rate,
+              y_new, rate_new, error, memory, dense):
+    """Write the states of the grid that lie in the last step; build the dense output first."""
+    if grid is not None:
+        lanes = lane_row(model.several, memory, 1, size)
+        while grid.done[0] < grid.states.shape[0]:
+            done = grid.done[0]
+            memory[0] = place_in_step(grid, done, clock)
+            if memory[0] > 1.0:
+                break
+            if clock[DENSE] == 0.0:
+                counted[EVALUATIONS] += build_dense(
+                    tableaux.stiff, tableaux.dop853, tableaux.radau, model, drive,
+                    tableaux.dense, size, clock[BASE] + clock[END] - clock[STEP], clock[STEP], y,
+                    rate, y_new, rate_new, memory, dense)
+                clock[DENSE] = 1.0
+                memory[0] = place_in_step(grid, done, clock)
+            together = 1
+            if done + COUNT <= grid.states.shape[0]:
+                for k in range(1, COUNT):
+                    memory[k] = place_in_step(grid, done + k, clock)
+                if memory[COUNT - 1] <= 1.0:
+                    together = COUNT
+            write_states(bodies, rigid, size, dense, done, together, memory, error, lanes,
+                         grid.states)
+            grid.done[0] = done + together
+
+
+@formula
+def is_finished(grid, clock, target):
+    """Return whether all is done: the grid, or the time `target` [s] since BASE is reached."""
+    if grid is not None:
+        return grid.done[0] >= grid.states.shape[0]
+    return clock[END] >= target
+
+
+@formula
+def begin_rates(stiff_plan, model, drive, t, y, rate):
+    """Write the rates of y, where the method needs them."""
+    if stiff_plan is None:
+        rates(model, drive, t, y, rate)
+
+
+@kernel
+def prepare(model, drive, power, tolerance, fastest, clock, states, memory):
+    """
+    Let a run begin in the state states[1] at the time of the clock; arguments as for advance.
+
+    fastest: rate of its springs [1/s]: lengths are known to some units of their last place, which
+    springs turn into velocities times their rate.
+
+    The first step is as long as the clock says; where it says nothing, as Hairer's rule has it:
+    from the sizes of the rates and of their change over a small step.
+    """
+    bodies, rigid = counts(model)
+    size = moving_size(drive.works, bodies, rigid)
+    y = number_row(model.several, memory, 0, size)
+    rate = number_row(model.several, memory, 2, size)
+    t = clock[BASE] + clock[END]
+    load(size, states[1], y)
+    rates(model, drive, t, y, rate)
+    store(size, rate, states[3])
+    reach = 1.0
+    for i in range(3 * bodies):
+        reach = max(reach, abs(y[i]))
+    clock[FLOOR] = _UNITS * reach * max(1.0, fastest)
+    clock[STEP] = 0.0
+    clock[DENSE] = 0.0
+    clock[WATCHED] = 0.0
+    clock[LAST_ERROR] = 0.0
+    if clock[NEXT] == 0.0:
+        ahead = number_row(model.several, memory, 1, size)
+        change = number_row(model.several, memory, 3, size)
+        h = max(1e-3 / (error_norm(bodies, rigid, y, rate) + 1e-6), 1e-15)
+        for i in range(size):
+            ahead[i] = y[i] + h * rate[i]
+        rates(model, drive, t + h, ahead, change)
+        for i in range(size):
+            change[i] = (change[i] - rate[i]) / h
+        largest = max(error_norm(bodies, rigid, y, rate), error_norm(bodies, rigid, y, change))
+        clock[NEXT] = min(100.0 * h, (tolerance / max(largest, 1e-15)) ** (1.0 / power), _LONGEST)
+
+
+@kernel
+def advance(model, drive, tableaux, power, tolerance, limit, budget, watch, clock, counted, states,
+            memory, dense, grid):
+    """
+    Take steps until the grid is filled, or (without one) until `limit` is reached.
+
+    power: of h in the error estimate; tolerance: of the run, in the norm of error_norm; limit:
+    [ns] since the beginning: a step ends there, and none goes on; budget: the most attempts;
+    watch: steps that stay longer than this [s], or where it is negative shorter than -watch, end
+    the run with SWITCH; clock, counted: see above; states: (4, size) start and end of the last
+    step, the rates there; dense: (DENSE_SIZE, size). Returns REACHED, BUDGET_SPENT,
+    STEP_TOO_SHORT or SWITCH.
+    """
+    bodies, rigid = counts(model)
+    size = moving_size(drive.works, bodies, rigid)
+    y = number_row(model.several, memory, 0, size)
+    y_new = number_row(model.several, memory, 1, size)
+    rate = number_row(model.several, memory, 2, size)
+    rate_new = number_row(model.several, memory, 3, size)
+    error = number_row(model.several, memory, 4, size)
+    load(size, states[0], y)
+    load(size, states[1], y_new)
+    load(size, states[2], rate)
+    load(size, states[3], rate_new)
+    status = REACHED
+    stalled = 0
+    tolerance = max(MARGIN * tolerance, clock[FLOOR])
+    while True:
+        if clock[STEP] > 0.0:
+            fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y,
+                      rate, y_new, rate_new, error, memory, dense)
+        target = (limit - np.int64(clock[BASE]) * 1000000000) * 1e-9
+        if is_finished(grid, clock, target) or clock[END] >= target:
+            break
+        if budget <= 0:
+            status = BUDGET_SPENT
+            break
+        clock[WATCHED] = watched(watch, clock[NEXT], clock[WATCHED])
+        if clock[WATCHED] >= (_PATIENCE if watch > 0.0 else _SHORT_PATIENCE):
+            clock[WATCHED] = 0.0
+            status = SWITCH
+            break
+        for i in range(size):
+            y[i] = y_new[i]
+            rate[i] = rate_new[i]
+        accepted = False
+        before, h_before = math.inf, 1.0
+        while not accepted and budget > 0:
+            budget -= 1
+            h = min(clock[NEXT], _LONGEST)
+            end = clock[END] + h
+            # Not a last step that is much shorter than the others.
+            if end + 1e-3 * h >= target:
+                end = target
+            elif end + h > target:
+                end = 0.5 * (clock[END] + target)
+            natural = h
+            h = end - clock[END]
+            if not h > _SHORTEST * clock[END] + 1e-300:
+                status = STEP_TOO_SHORT
+                break
+            t = clock[BASE] + clock[END]
+            counted[EVALUATIONS] += attempt(
+                tableaux.gragg, tableaux.stormer, tableaux.stiff, tableaux.dop853,
+                tableaux.radau, model, drive, size, t, h, y, rate, tolerance, memory, y_new,
+                error)
+            ratio = error_norm(bodies, rigid, y_new, error) / tolerance
+            if not ratio < 1e30:
+                ratio = 1e30
+            logarithm = math.log(max(ratio, 1e-30))
+            stalled = stalled + 1 if is_rounding(
+                logarithm - before, math.log(h / h_before), power,
+                ratio * tolerance) else 0
+            before, h_before = logarithm, h
+            accepted = ratio <= 1.0 or stalled >= 2
+            if accepted:
+                factor = step_factor(logarithm, clock[LAST_ERROR], power)
+                if ratio > 1.0:
+                    counted[ROUNDED] += 1
+                    # No shorter step would be better.
+                    factor = 2.0
+                clock[SHRUNK] = clock[SHRUNK] + 1.0 if factor < 1.0 else 0.0
+                if clock[SHRUNK] >= _PERSISTENCE:
+                    # So long without effect: the estimates are rounding.
+                    clock[SHRUNK] = 0.0
+                    factor = _FASTEST
+                clock[LAST_ERROR] = logarithm
+                clock[LARGEST] = max(clock[LARGEST], ratio)
+                longer = h * min(max(factor, _SLOWEST), _FASTEST)
+                # A step that was cut short says nothing against the length it would have had.
+                clock[NEXT] = max(longer, natural) if h < natural else longer
+                counted[STEPS] += 1
+            else:
+                factor = math.exp(_LOG_SAFETY - logarithm / power)
+                clock[NEXT] = h * min(max(factor, _SLOWEST), 0.7)
+                counted[REJECTED] += 1
+        if not accepted:
+            if status == REACHED:
+                status = BUDGET_SPENT
+            for i in range(size):
+                y_new[i] = y[i]
+                rate_new[i] = rate[i]
+            clock[STEP] = 0.0
+            break
+        normalise(bodies, rigid, y_new)
+        whole = math.floor(end)
+        clock[STEP] = h
+        clock[BASE] += whole
+        clock[END] = end - whole
+        if end == target:
+            # The limit, with the rounding that it has seen from the new whole second.
+            clock[END] = (limit - np.int64(clock[BASE]) * 1000000000) * 1e-9
+        clock[DENSE] = 0.0
+        begin_rates(tableaux.stiff, model, drive, clock[BASE] + clock[END], y_new,
+                    rate_new)
+        counted[EVALUATIONS] += 1
+    store(size, y, states[0])
+    store(size, y_new, states[1])
+    store(size, rate, states[2])
+    store(size, rate_new, states[3])
+    return status

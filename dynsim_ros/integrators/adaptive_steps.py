@@ -1,0 +1,172 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A motion advanced in steps that the method chooses, whoever looks at it and when."""
+
+import numpy as np
+
+from .adaptive import (advance, BASE, BUDGET_SPENT, CLOCK_SIZE, COUNTS_SIZE, END, FLOOR, Grid,
+                       MARGIN, NEXT, prepare, REJECTED, STEP, STEP_TOO_SHORT,
+                       STEPS)
+from .dense_output import DENSE_SIZE
+from .entry import entry
+from .memory import new_memory
+from .stiffness import EXPLICIT_REACH, spring_rates
+
+# Farther ahead than any run goes [ns].
+FAR = 2 ** 62
+# The most attempts at a step in one go, unless told otherwise: work is bounded, whatever the
+# scene.
+BUDGET = 200_000
+_SECOND = 1_000_000_000
+
+
+class IntegrationError(ArithmeticError):
+    """A method cannot go on with its tolerance."""
+
+
+class Walk:
+    """
+    What all adaptive ways to advance a state have in common.
+
+    current: the AdaptiveSteps at work; go(limit, grid): let them, or others, take steps; budget:
+    the most attempts at a step in one go.
+    """
+
+    removed = 0.0
+    budget = BUDGET
+
+    @property
+    def shortfall(self):
+        """Return, in words, by how much rounding exceeds the tolerance; None if it does not."""
+        steps = self.current
+        if steps.clock[FLOOR] <= MARGIN * steps.tolerance:
+            return None
+        return (f'the tolerance {steps.tolerance:g} is below what rounding leaves of a motion as '
+                f'fast as this one: it is computed to {steps.clock[FLOOR] / MARGIN:.1g}')
+
+    def state_at(self, time_ns, limit_ns=None):
+        """
+        Return the state at an instant that is not before the last one asked for.
+
+        limit_ns: the next instant that is known to begin something new; the last step ends there.
+        """
+        if time_ns == self.current.origin:
+            return self.current.states[1].copy()
+        states = np.empty((1, self.current.states.shape[1]))
+        states[0] = self.current.states[1]
+        self.fill(time_ns, 1, states, limit_ns)
+        return states[0]
+
+    def fill(self, first_ns, period_ns, states, limit_ns=None):
+        """Write the states at instants that are evenly spaced to states: (n, size)."""
+        origin = self.current.origin
+        done = np.zeros(1, dtype=np.int64)
+        self.go(FAR if limit_ns is None else limit_ns - origin,
+                Grid(first_ns - origin, period_ns, states, done))
+
+    def end_at(self, time_ns):
+        """Return the state at an instant at which a step ends."""
+        self.go(time_ns - self.current.origin, None)
+        return self.current.states[1].copy()
+
+    def cut(self, time_ns):
+        """Return the state at an instant; a step that has gone past it is taken back to it."""
+        usual = self.current.take_back(time_ns)
+        state = self.end_at(time_ns)
+        self.current.clock[NEXT] = max(usual, self.current.clock[NEXT])
+        return state
+
+
+class AdaptiveSteps(Walk):
+    """
+    Advances a state with an adaptive method.
+
+    method: Adaptive; tolerance: see Settings; watch: see adaptive.advance; else as for FixedSteps.
+    The steps depend on where the motion was begun and on `limit_ns`, never on the instants at
+    which states are asked for.
+    """
+
+    def __init__(self, method, tolerance, model, drive, size, springs, watch=0.0):
+        self.method, self.tolerance, self.watch = method, tolerance, watch
+        self._memory = new_memory(size, springs)
+        self._model, self._drive = model, drive
+        self.clock, self.counts = np.zeros(CLOCK_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
+        self.states, self._dense = np.zeros((4, size)), np.zeros((DENSE_SIZE, size))
+        self.origin = 0
+        self._fastest = spring_rates(model)[0] / EXPLICIT_REACH
+        self._prepare, self._advance = None, {}
+
+    @property
+    def current(self):
+        """Return the steps at work: these."""
+        return self
+
+    def begin(self, time_ns, state):
+        """Begin at an instant [ns], in a state: (size,)."""
+        self.origin = time_ns
+        self.clock[[BASE, END]] = 0.0
+        self.states[1] = state
+        self._begin()
+
+    def follow(self, other, step):
+        """Go on where other steps have come to, with a first step of a given length [s]."""
+        self.origin = other.origin
+        self.clock[[BASE, END, NEXT]] = other.clock[BASE], other.clock[END], step
+        self.states[1] = other.states[1]
+        self._begin()
+
+    def _begin(self):
+        arguments = (self._model, self._drive, self.method.power, self.tolerance, self._fastest,
+                     self.clock, self.states, self._memory)
+        if self._prepare is None:
+            self._prepare = entry(prepare, *arguments)
+        self._prepare(*arguments)
+
+    def reset(self):
+        """Forget all: the next beginning is the first one."""
+        self.clock[:] = 0.0
+        self.counts[:] = 0
+
+    def prepare(self):
+        """Compile, or load from the cache, what the steps need, or do nothing."""
+        none = np.empty((0, self.states.shape[1]))
+        self.run(FAR, Grid(0, 1, none, np.zeros(1, dtype=np.int64)))
+
+    @property
+    def attempts(self):
+        """Return how many steps were attempted."""
+        return int(self.counts[STEPS] + self.counts[REJECTED])
+
+    def run(self, limit, grid=None, budget=BUDGET):
+        """Take steps until the grid is filled or the limit reached; return what ended them."""
+        arguments = (self._model, self._drive, self.method.tableaux, self.method.power,
+                     self.tolerance, limit, budget, self.watch, self.clock, self.counts,
+                     self.states, self._memory, self._dense, grid)
+        if (grid is None) not in self._advance:
+            self._advance[grid is None] = entry(advance, *arguments)
+        return self._advance[grid is None](*arguments)
+
+    def go(self, limit, grid):
+        """Take steps as run does; raise IntegrationError if the method cannot go on."""
+        self.check(self.run(limit, grid, self.budget), self.budget)
+
+    def take_back(self, time_ns):
+        """Undo the last step if it went past an instant; return the usual length of a step."""
+        behind = time_ns - self.origin - int(self.clock[BASE]) * _SECOND
+        if behind * 1e-9 < self.clock[END] and self.clock[STEP] > 0.0:
+            self.clock[END] -= self.clock[STEP]
+            self.states[1], self.states[3] = self.states[0], self.states[2]
+            self.clock[STEP] = 0.0
+        return self.clock[NEXT]
+
+    def check(self, status, budget):
+        """Raise IntegrationError unless a run ended well."""
+        if status == BUDGET_SPENT:
+            raise IntegrationError(
+                f'{budget} steps in one go did not suffice; the last ones were '
+                f'{self.clock[NEXT]:.3g} s long: use a larger tolerance than {self.tolerance:g}, '
+                'a softer spring, or more mass')
+        if status == STEP_TOO_SHORT:
+            raise IntegrationError(
+                f'even a step of {self.clock[NEXT]:.1g} s does not keep the tolerance '
+                f'{self.tolerance:g}: use a larger one, or a method of fixed step')

@@ -1,0 +1,105 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The choice between the explicit and the stiff method, from what the run shows.
+
+The explicit method goes first. Once its steps have stayed for a while where only stability can
+hold them back, the stiff one tries a step so much longer that it is worth its cost; if it succeeds
+it goes on, and hands back once its steps are no longer worth theirs. After a trial that
+did not succeed the next one waits twice as long. All that decides is in the steps themselves, so
+that a repeated run decides alike.
+"""
+
+import math
+
+from .adaptive import NEXT, STEPS, SWITCH
+from .adaptive_steps import AdaptiveSteps, Walk
+from .stiffness import held_back_step
+
+# The first step that a stiff method tries, over what it has to be to be worth it.
+_AMBITION = 1.6
+# Steps until the next trial: at first, and at most.
+_SHORTEST_WAIT, _LONGEST_WAIT = 32, 4096
+# Stiff steps in a row after which a trial was a success.
+_SUCCESS = 20
+
+
+class AutoSteps(Walk):
+    """
+    Advances a state with an explicit method, and with a stiff one where that is faster.
+
+    explicit, stiff: Adaptive; cost: of a step of the stiff one, in steps of the other; else as for
+    AdaptiveSteps.
+    """
+
+    def __init__(self, explicit, stiff, cost, tolerance, model, drive, size, springs):
+        self._cost = cost
+        held_back = held_back_step(model)
+        self.explicit = AdaptiveSteps(explicit, tolerance, model, drive, size, springs,
+                                      held_back if held_back < math.inf else 0.0)
+        self._new_stiff = lambda: AdaptiveSteps(stiff, tolerance, model, drive, size, springs)
+        self.stiff = None
+        self.current = self.explicit
+        self._wait, self._next_trial, self._entered = _SHORTEST_WAIT, 0, 0
+
+    @property
+    def counts(self):
+        """Return what was counted, as in adaptive."""
+        return self.explicit.counts + (0 if self.stiff is None else self.stiff.counts)
+
+    def begin(self, time_ns, state):
+        """Begin at an instant [ns], in a state: (size,)."""
+        self.current.begin(time_ns, state)
+
+    def reset(self):
+        """Forget all: the next beginning is the first one."""
+        self.explicit.reset()
+        if self.stiff is not None:
+            self.stiff.reset()
+        self.current = self.explicit
+        self._wait, self._next_trial, self._entered = _SHORTEST_WAIT, 0, 0
+
+    def prepare(self):
+        """Compile, or load from the cache, what the steps need, or do nothing."""
+        self.explicit.prepare()
+
+    def go(self, limit, grid):
+        """Take steps as AdaptiveSteps.run does, with whichever method is the better one."""
+        left = self.budget
+        while True:
+            at_work, before = self.current, self.current.attempts
+            status = at_work.run(limit, grid, left)
+            left -= (at_work.attempts - before) * (self._cost if at_work is self.stiff else 1)
+            left = int(left)
+            if status != SWITCH:
+                break
+            if at_work is self.stiff:
+                self._hand_back()
+            elif self.explicit.counts[STEPS] >= self._next_trial:
+                self._try_stiff(limit, grid)
+        self.current.check(status, self.budget)
+
+    def _hand_back(self):
+        if self.stiff.counts[STEPS] - self._entered >= _SUCCESS:
+            self._wait = _SHORTEST_WAIT
+        self._postpone()
+        self.explicit.follow(self.stiff, self.explicit.clock[NEXT])
+        self.current = self.explicit
+
+    def _postpone(self):
+        self._next_trial = self.explicit.counts[STEPS] + self._wait
+        self._wait = min(2 * self._wait, _LONGEST_WAIT)
+
+    def _try_stiff(self, limit, grid):
+        """Go over to the stiff method if it can take a step that is long enough."""
+        if self.stiff is None:
+            self.stiff = self._new_stiff()
+        usual = self.explicit.clock[NEXT]
+        self.stiff.follow(self.explicit, _AMBITION * self._cost * usual)
+        self.stiff.watch = -self._cost * usual
+        self._entered = self.stiff.counts[STEPS]
+        self.stiff.run(limit, grid, budget=1)
+        if self.stiff.counts[STEPS] > self._entered:
+            self.current = self.stiff
+        else:
+            self._postpone()

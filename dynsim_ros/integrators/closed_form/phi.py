@@ -1,0 +1,35 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The functions phi of exponential integrators, for decay: without cancellation at any argument.
+
+Source: Hochbruck and Ostermann, Exponential integrators, Acta Numerica 19 (2010), section 2.1,
+with the sign of the argument turned.
+"""
+
+import math
+
+from ...physics.jit import formula
+
+# 1 / 2!, -1 / 3!, 1 / 4!, ...: what is left out is below 1e-17 for |x| < 1.
+_SERIES = tuple((-1.0) ** n / math.factorial(n + 2) for n in range(17))
+
+
+@formula
+def phi_1(x):
+    """Return (1 - exp(-x)) / x: the mean of exp(-x s) over s in [0, 1]."""
+    if x == 0.0:
+        return 1.0
+    return -math.expm1(-x) / x
+
+
+@formula
+def phi_2(x):
+    """Return (exp(-x) - 1 + x) / x^2: the mean of (1 - s) exp(-x s), 1 / 2 at x = 0."""
+    if abs(x) < 1.0:
+        total = 0.0
+        for n in range(len(_SERIES) - 1, -1, -1):
+            total = total * x + _SERIES[n]
+        return total
+    # Divided twice: the square of a very large x is not finite.
+    return (math.expm1(-x) + x) / x / x

@@ -1,0 +1,85 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rotation of a rigid body on which no moment acts, whatever its inertia.
+
+Along principal axes e, named so that the angular momentum L circles about e_3:
+omega = (A_1 cn u, +-A_2 sn u, A_3 dn u), u = p t + v (Landau and Lifshitz, Mechanics (1976),
+section 37). The orientation is a turn by an angle chi about L after the smallest rotation that
+takes L from where it lies in the body to e_3: chi' = (2 E + L omega_3) / (L + I_3 omega_3),
+whose denominator is never small. The integral of chi' is one of the third kind; by theta
+functions half of it is a multiple of t and the argument of one complex number (C. G. J. Jacobi,
+Sur la rotation d'un corps (1850); R. van Zon and J. Schofield, Numerical implementation of the
+exact dynamics of free rigid bodies, J. Comput. Phys. 225 (2007), 145-164).
+
+Energy and angular momentum stay what they are, at all times, by the form of these expressions.
+"""
+
+import math
+from typing import NamedTuple
+
+from .jacobi import Jacobi, jacobi
+from ...physics.jit import formula
+from ...physics.rotation import quaternion_product, rotate
+
+
+class TorqueFree(NamedTuple):
+    """
+    What is computed once for a free rotation, by torque_free_setup.
+
+    jacobi: the elliptic functions of the motion; rate: p [rad/s]; phase: v; circulation: 1 if
+    e_3 is the axis of the largest moment, -1 if it is that of the smallest; precession: what is
+    steady in half of chi' [rad/s]; direction, omega: (3,) amplitudes along e of L / |L| and of
+    the angular velocity [rad/s]; body: the rotation (w, x, y, z) from e to body axes; world: from
+    where L is e_3 to world.
+    """
+
+    jacobi: Jacobi
+    rate: float
+    phase: float
+    circulation: float
+    precession: float
+    direction: tuple
+    omega: tuple
+    body: tuple
+    world: tuple
+
+
+@formula
+def conjugate(q):
+    """Return the inverse of a unit quaternion."""
+    return (q[0], -q[1], -q[2], -q[3])
+
+
+@formula
+def orientation_about_momentum(functions, circulation, angle, direction):
+    """
+    Return the orientation of e as seen along L.
+
+    functions: what jacobi returns; angle: what is steady in half of chi [rad].
+    """
+    sn, cn, dn, apart, real, imaginary = functions
+    x, y, z = direction[0] * cn, direction[1] * sn, 1.0 + direction[2] * dn
+    half = angle - circulation * apart
+    c, s = math.cos(half), math.sin(half)
+    imaginary *= circulation
+    c, s = c * real + s * imaginary, s * real - c * imaginary
+    size = math.sqrt((c * c + s * s) * (x * x + y * y + z * z))
+    c, s = c / size, s / size
+    return (c * z, c * y + s * x, s * y - c * x, s * z)
+
+
+@formula
+def torque_free(motion, t):
+    """
+    Return orientation (w, x, y, z) and angular velocity (3,) in world [rad/s] at time t [s].
+
+    motion: TorqueFree. Any t, also negative; the cost does not depend on it.
+    """
+    functions = jacobi(motion.jacobi, motion.rate * t + motion.phase)
+    about = orientation_about_momentum(functions, motion.circulation, motion.precession * t,
+                                       motion.direction)
+    axes = quaternion_product(motion.world, about)
+    sn, cn, dn = functions[:3]
+    omega = (motion.omega[0] * cn, motion.omega[1] * sn, motion.omega[2] * dn)
+    return quaternion_product(axes, conjugate(motion.body)), rotate(axes, omega)

@@ -1,0 +1,86 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One step of Gragg's extrapolated midpoint rule, its sub-sequences side by side in Lanes.
+
+y[1] = y[0] + h f(y[0]), y[i + 1] = y[i - 1] + 2 h f(y[i]): for an even number of substeps the
+error has even powers of h only, so that each sequence raises the order by two.
+
+W. B. Gragg, SIAM J. Numer. Anal. 2 (1965) 384; Hairer, Norsett, Wanner, Solving Ordinary
+Differential Equations I, II.9. That the sequences are independent is as old; in the four lanes
+the step of order 16 takes as long as the 15 evaluations of its longest sequence and one more.
+"""
+
+from .lane_schedule import (ENDS, FIRST, FIRST_ERROR, FIRST_WEIGHT, schedule, SECOND,
+                            SECOND_ERROR, SECOND_WEIGHT)
+from .memory import lane_row
+from ..physics.jit import part
+from ..physics.lanes import choose, COUNT, lanes_at, spread, total
+from ..physics.motion import rates
+
+STAGES = 8
+
+
+def gragg_schedule(stages=STAGES):
+    """Return the Schedule of the method of order 2 stages."""
+    return schedule(list(range(2, 2 * stages + 1, 2)), 2, lambda n: n - 1)
+
+
+@part
+def midpoint(model, drive, size, t, h, y, behind, here, state, f):
+    """
+    Put behind + 2 h f(here) where `behind` was.
+
+    behind, here: Lanes, less the state y at the start: sums of small numbers are rounded less; t:
+    Lanes, the time of `here`; state, f: Cells to use.
+    """
+    for i in range(size):
+        state[i] = y[i] + here[i]
+    rates(model, drive, t, state, f)
+    for i in range(size):
+        behind[i] = behind[i] + (h + h) * f[i]
+
+
+@part
+def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
+    """
+    Take one step and estimate its error.
+
+    plan: Schedule; t: [s] as for rates; step: [s]; y, rate: Cells, state and its rate at t; y_new,
+    error: Cells for the results. First sequences end in rows 0, 2, …, with their result in a;
+    second ones all in the same row, the last or the one before, with theirs in b.
+    """
+    a = lane_row(model.several, memory, 0, size)
+    b = lane_row(model.several, memory, 1, size)
+    f = lane_row(model.several, memory, 2, size)
+    first = lane_row(model.several, memory, 3, size)
+    state = lane_row(model.several, memory, 4, size)
+    table = plan.table
+    h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
+    now = t + h
+    for i in range(size):
+        a[i] = spread(0.0)
+        b[i] = h * rate[i]
+        first[i] = spread(0.0)
+    for row in range(0, plan.rows, 2):
+        midpoint(model, drive, size, now, h, y, a, b, state, f)
+        now = now + h
+        if row >= plan.first_end:
+            ended = lanes_at(table, ENDS + COUNT * row)
+            for i in range(size):
+                first[i] = choose(ended, a[i], first[i])
+                b[i] = choose(ended, 0.0, b[i])
+                a[i] = choose(ended, h_second * rate[i], a[i])
+            now = choose(ended, t + h_second, now)
+            h = choose(ended, h_second, h)
+        if row == plan.rows - 1:
+            break
+        midpoint(model, drive, size, now, h, y, b, a, state, f)
+        now = now + h
+    second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1 - plan.rows % 2))
+    w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
+    e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
+    for i in range(size):
+        other = choose(second, b[i], 0.0)
+        y_new[i] = y[i] + total(w_1 * first[i] + w_2 * other)
+        error[i] = total(e_1 * first[i] + e_2 * other)

@@ -1,0 +1,81 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Where a method keeps its intermediate states: in registers for a single body, else in memory.
+
+The memory is one array: rows of Lanes first, then rows of numbers, each as long as a state,
+then what a linearly implicit method keeps of every spring, and a matrix of springs by springs,
+then what a collocation method keeps of its stages, and a matrix of springs times stages by the
+same.
+"""
+
+from numba.extending import overload
+import numpy as np
+
+from ..physics.cells import lane_cells, number_cells
+from ..physics.jit import formula
+from ..physics.lanes import COUNT
+
+LANE_ROWS = 8
+NUMBER_ROWS = 24
+
+# What is kept of a spring [Lanes].
+SPRING_SIZE = 20
+
+# The stages of a collocation method, its rows of them, and what it keeps of a spring.
+STAGES, STAGE_ROWS, STAGE_SPRING_SIZE = 8, 3, 17
+
+
+def new_memory(size, springs):
+    """Return memory for any method; size: length of the state; springs: how many there are."""
+    # The kernels know of no difference between one spring and none: see Model.connections.
+    springs = max(springs, 1)
+    return np.zeros(stage_place(size, springs) + STAGES * (STAGE_ROWS * size + 1
+                                                           + springs * STAGE_SPRING_SIZE)
+                    + STAGES * springs * (STAGES * springs + 1))
+
+
+def number_row(several, memory, row, size):
+    """Return Cells for a state; row: below NUMBER_ROWS, each row is another place."""
+    return number_cells(several, memory, (COUNT * LANE_ROWS + row) * size, size)
+
+
+@overload(number_row, inline='always')
+def _number_row(several, memory, row, size):
+    return number_row
+
+
+@formula
+def spring_place(size):
+    """Return where what is kept of the springs begins."""
+    return (COUNT * LANE_ROWS + NUMBER_ROWS) * size
+
+
+@formula
+def stage_place(size, springs):
+    """Return where what is kept of the stages begins."""
+    return spring_place(size) + COUNT * springs * (SPRING_SIZE + 1 + springs)
+
+
+def lane_row(several, memory, row, size):
+    """Return Cells for the states in all lanes; row: below LANE_ROWS."""
+    return lane_cells(several, memory, COUNT * row * size, size)
+
+
+@overload(lane_row, inline='always')
+def _lane_row(several, memory, row, size):
+    return lane_row
+
+
+@formula
+def load(size, state, y):
+    """Copy a state from an array to Cells."""
+    for i in range(size):
+        y[i] = state[i]
+
+
+@formula
+def store(size, y, state):
+    """Copy a state from Cells to an array."""
+    for i in range(size):
+        state[i] = y[i]

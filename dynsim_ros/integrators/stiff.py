@@ -1,0 +1,59 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One step of the extrapolated linearly implicit Euler method, its sub-sequences in Lanes.
+
+For stiff springs and strong dampers: steps are as long as the slow motion allows, however short
+the period of the springs. Substeps 1, 2, 3, …; the error of the first result has all powers of h.
+
+Deuflhard, SIAM Review 27 (1985) 505; Hairer, Wanner, Solving Ordinary Differential Equations II,
+IV.9.
+"""
+
+from .lane_schedule import (ENDS, FIRST, FIRST_ERROR, FIRST_WEIGHT, schedule, SECOND,
+                            SECOND_ERROR, SECOND_WEIGHT)
+from .linearly_implicit import linearly_implicit_substep
+from .memory import lane_row
+from ..physics.jit import formula
+from ..physics.lanes import choose, COUNT, lanes_at, spread, total
+
+STAGES = 7
+
+
+def stiff_schedule(stages=STAGES):
+    """Return the Schedule of the method of order `stages`."""
+    return schedule(list(range(1, stages + 1)), 1, lambda n: n)
+
+
+@formula
+def stiff(model, drive, plan, size, t, step, y, memory, y_new, error):
+    """Take one step and estimate its error; arguments as for gragg."""
+    here = lane_row(model.several, memory, 0, size)
+    first = lane_row(model.several, memory, 1, size)
+    second = lane_row(model.several, memory, 2, size)
+    f = lane_row(model.several, memory, 3, size)
+    responses = lane_row(model.several, memory, 4, size)
+    table = plan.table
+    h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
+    for i in range(size):
+        here[i] = spread(y[i])
+        first[i] = spread(0.0)
+        second[i] = spread(0.0)
+    now = spread(t)
+    for row in range(plan.rows):
+        linearly_implicit_substep(model, drive, now, h, memory, here, f, responses)
+        now = now + h
+        if row >= plan.first_end:
+            ended = lanes_at(table, ENDS + COUNT * row)
+            ended_second = lanes_at(table, ENDS + COUNT * (plan.rows + row))
+            for i in range(size):
+                first[i] = choose(ended, here[i] - y[i], first[i])
+                second[i] = choose(ended_second, here[i] - y[i], second[i])
+                here[i] = choose(ended, y[i], here[i])
+            now = choose(ended, t, now)
+            h = choose(ended, h_second, h)
+    w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
+    e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
+    for i in range(size):
+        y_new[i] = y[i] + total(w_1 * first[i] + w_2 * second[i])
+        error[i] = total(e_1 * first[i] + e_2 * second[i])
