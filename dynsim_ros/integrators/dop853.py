@@ -72,8 +72,10 @@ def dop853(model, drive, data, size, t, h, y, rate, memory, y_new, error):
     add_stages(size, data, E3_AT, STAGES, h, memory, k)
     fifth, third = error_norm(bodies, rigid, y_new, error), error_norm(bodies, rigid, y_new, k)
     if fifth > 0.0:
-        # The norm of the result is |e5|^2 / sqrt(|e5|^2 + 0.01 |e3|^2), as in the book.
-        factor = fifth / math.sqrt(fifth * fifth + 0.01 * third * third)
+        # The norm of the result is |e5|^2 / sqrt(|e5|^2 + 0.01 |e3|^2), as in the book; squares of
+        # the ratio, which do not vanish with the errors.
+        ratio = third / fifth
+        factor = 1.0 / math.sqrt(1.0 + 0.01 * ratio * ratio)
         for i in range(size):
             error[i] = error[i] * factor
 

@@ -19,7 +19,7 @@ from numba import literal_unroll
 from .linearly_implicit import damping_of, first_of, spring_count
 from .mass_response import angular_response, fill_responses
 from .memory import lane_row, stage_place, STAGE_ROWS, STAGE_SPRING_SIZE, STAGES
-from .radau_tableau import A, A2, ERROR, NODES
+from .radau_tableau import A, A2, CAUTION, ERROR, NODES, SLOPE
 from ..physics.forces import body_of, spring_motion
 from ..physics.jit import formula
 from ..physics.lanes import COUNT, lanes_at, put_lanes, spread, total
@@ -389,10 +389,14 @@ def radau(model, drive, table, size, t, h, y, rate, tolerance, memory, y_new, er
         last = change
     for i in range(size):
         y_new[i] = memory[here + STAGES * i + STAGES - 1]
-        error[i] = 0.0
+        interior, slope = 0.0, 0.0
         for batch in range(2):
-            error[i] = error[i] + total(lanes_at(table, ERROR + COUNT * batch)
-                                        * (stages_of(memory, here, i, batch) - y[i]))
+            way = stages_of(memory, here, i, batch) - y[i]
+            interior += total(lanes_at(table, ERROR + COUNT * batch) * way)
+            slope += total(lanes_at(table, SLOPE + COUNT * batch) * way)
+        # The stages do not see what happens just after the start: the rate there does.
+        start = CAUTION * (h * rate[i] - slope)
+        error[i] = start if abs(start) > abs(interior) else interior
     if not converged:
         for i in range(size):
             y_new[i] = y[i]

@@ -84,23 +84,25 @@ def sum_of(terms):
     return total.limit_denominator(10 ** _DIGITS)
 
 
-# Places in the packed table: nodes, columns of A, columns of A^2, weights of the error estimate.
+# Places in the packed table: nodes, columns of A, columns of A^2, weights of the error estimate,
+# and of the slope that the polynomial through the stages has at the start.
 NODES = 0
 A = STAGES
 A2 = A + STAGES * STAGES
 ERROR = A2 + STAGES * STAGES
+SLOPE = ERROR + STAGES
 # The node whose value the error estimate compares with the interpolation of the others.
 _LEFT_OUT = 3
 # That difference has the power 8 of the step, the error at the end 16, or 9 where springs are too
 # stiff for it; this part of it is still above the error.
-_CAUTION = 0.01
+CAUTION = 0.01
 
 
 @lru_cache
 def table():
     """Return all coefficients in one array."""
     a, c = matrix(), nodes()
-    packed = np.zeros(ERROR + STAGES)
+    packed = np.zeros(SLOPE + STAGES)
     packed[:STAGES] = c
     for i in range(STAGES):
         for j in range(STAGES):
@@ -112,5 +114,10 @@ def table():
         for k, other in enumerate([Fraction(0), *c]):
             if k - 1 not in (j, _LEFT_OUT):
                 weight *= (x - other) / (c[j] - other)
-        packed[ERROR + j] = _CAUTION * float(-1 if j == _LEFT_OUT else weight)
+        slope = 1 / c[j]
+        for k, other in enumerate(c):
+            if k != j:
+                slope *= other / (other - c[j])
+        packed[SLOPE + j] = slope
+        packed[ERROR + j] = CAUTION * float(-1 if j == _LEFT_OUT else weight)
     return packed

@@ -1,0 +1,42 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Every scene that has a reference, by the methods that choose their own steps, as plain Python.
+
+Errors grow, in these scenes, by the amplification that the reference tells.
+"""
+
+from by_hand import nothing_compiled
+from dynsim_ros.simulation import Propagator
+from dynsim_ros.simulation.layout import Layout
+import pytest
+from references import amplification, error, load, scenes, State
+
+# With each kind of body and of spring, alone and together.
+SOFT = ('S1', 'S2', 'moving_anchor', 'spin_in_whirl', 'pulling_at_each_other', 'chain',
+        'any_inertia', 'four_bodies')
+STIFF = ('S2', 'spin_in_whirl', 'pulling_at_each_other', 'strong_damper', 'stiff_pair')
+
+
+@pytest.fixture(autouse=True)
+def plain():
+    with nothing_compiled():
+        yield
+
+
+def error_at_first_time(name, method, tolerance):
+    scene, times, motions = load(name)
+    propagator = Propagator(scene, integrator=method, tolerance=tolerance)
+    return error(State(Layout(scene), propagator.end_state(times[0])), motions[0])
+
+
+@pytest.mark.parametrize('name', scenes())
+def test_auto(name):
+    assert error_at_first_time(name, 'auto', 1e-6) < 1e-6 * max(2, amplification(name) / 100)
+
+
+@pytest.mark.parametrize('name, method, tolerance', [
+    *((name, method, 1e-8) for name in SOFT for method in ('extrapolation', 'dop853')),
+    *((name, 'radau', 1e-8) for name in STIFF), *((name, 'stiff', 1e-4) for name in STIFF)])
+def test_methods(name, method, tolerance):
+    assert error_at_first_time(name, method, tolerance) < 3 * tolerance
