@@ -4,6 +4,7 @@
 
 from . import methods
 from .adaptive_steps import AdaptiveSteps
+from .auto_motion import AutoMotion
 from .auto_steps import AutoSteps
 from .fixed_steps import FixedSteps
 from .stiffness import drag_rate, spring_rates
@@ -45,8 +46,9 @@ def new_steps(settings, model, drive, size):
     if method.advance is not None:
         return FixedSteps(method.advance, settings.step_ns, model, drive, size, springs)
     if method.name == 'auto':
-        return AutoSteps(explicit_method(model), *stiff_method(model, springs, settings.tolerance),
-                         settings.tolerance, model, drive, size, springs)
+        return AutoMotion(model, drive, lambda: AutoSteps(
+            explicit_method(model), *stiff_method(model, springs, settings.tolerance),
+            settings.tolerance, model, drive, size, springs))
     adaptive = {'extrapolation': lambda: explicit_method(model), 'stiff': methods.stiff,
                 'radau': methods.radau, 'dop853': methods.dop853}[method.name]()
     return AdaptiveSteps(adaptive, settings.tolerance, model, drive, size, springs)

@@ -14,6 +14,7 @@ Source: Landau and Lifshitz, Mechanics (1976), sections 25 and 26.
 """
 
 from .oscillator import oscillation, responses
+from .phase import quotient_in_two
 from ...physics.jit import formula
 from ...physics.vector import add, scale, subtract
 
@@ -36,9 +37,9 @@ def centre_of_springs(stiffnesses, anchors):
 
 @formula
 def on_centred_springs(t, position, velocity, mass, stiffness, centre, centre_velocity,
-                       acceleration, linear_drag, wind):
+                       acceleration, linear_drag, wind, t_left=0.0):
     """
-    Return position and velocity at time t >= 0 [s] from those at time 0, all (3,) in world.
+    Return position and velocity at time t + t_left >= 0 [s] from those at time 0, (3,) in world.
 
     mass [kg]; stiffness, centre, centre_velocity: from centre_of_springs, centre at time 0,
     centre_velocity None if the anchors rest; acceleration: (3,) by gravity and other constant
@@ -56,8 +57,8 @@ def on_centred_springs(t, position, velocity, mass, stiffness, centre, centre_ve
     if linear_drag is not None:
         g = 0.5 * linear_drag / mass
         a = add(a, scale(2.0 * g, air))
-    square = stiffness / mass
-    c, s, slope, p = responses(t, g, square)
+    square, left = quotient_in_two(stiffness, mass)
+    c, s, slope, p = responses(t, g, square, t_left, left)
     x0, v0 = oscillation(y[0], v[0], a[0], square, c, s, slope, p)
     x1, v1 = oscillation(y[1], v[1], a[1], square, c, s, slope, p)
     x2, v2 = oscillation(y[2], v[2], a[2], square, c, s, slope, p)

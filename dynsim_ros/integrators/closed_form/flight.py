@@ -7,9 +7,7 @@ Source: Landau and Lifshitz, Mechanics (1976), section 25 (friction linear in th
 means over the time flown: they stay exact where resistance is small or overwhelming.
 """
 
-import math
-
-from .phi import phi_1, phi_2
+from .phi import decay_and_phis
 from ...physics.jit import formula
 from ...physics.vector import add, scale
 
@@ -36,9 +34,9 @@ def flight(t, position, velocity, acceleration, mass, linear_drag, wind):
     if linear_drag is None:
         return free_flight(t, position, velocity, acceleration)
     x = linear_drag * t / mass
-    first, second = phi_1(x), phi_2(x)
+    decay, first, second = decay_and_phis(x)
     moved = add(position, scale(t * first, velocity))
-    after = scale(math.exp(-x), velocity)
+    after = scale(decay, velocity)
     if wind is not None:
         moved = add(moved, scale(t * (x * second), wind))
         after = add(after, scale(x * first, wind))

@@ -26,9 +26,9 @@ class Jacobi(NamedTuple):
     What is computed once for a modulus k and a phase.
 
     complement: k'^2; landen: 1 + k_1; inner: 1 - k_1^2; period: 2 K, and one over it, both zero
-    if it is infinite; scale: from u to the argument x of the theta functions; reach: x at u = K;
-    nome to odd: as in theta.py; slope: of the phase against u, at u = 0; turn: what the argument
-    of the complex number below lacks for each period.
+    if it is infinite; scale: from u to the argument x of the theta functions; nome to odd: as in
+    theta.py; slope: of the phase against u, at u = 0; turn: what the argument of the complex
+    number below lacks for each period.
     """
 
     hyperbolic: bool
@@ -38,7 +38,6 @@ class Jacobi(NamedTuple):
     period: float
     inverse_period: float
     scale: float
-    reach: float
     nome: float
     ratio: float
     even: tuple
@@ -67,8 +66,8 @@ def trigonometric_constants(complement, landen, inner, quarter, other, height):
     even, odd, slope = trigonometric_phase(q, math.exp(spread - middle),
                                            math.exp(-spread - middle))
     scale = 0.5 * math.pi / quarter
-    return Jacobi(False, complement, landen, inner, 2.0 * quarter, 0.5 / quarter, scale,
-                  0.5 * math.pi, q, trigonometric_ratio(q), even, odd, scale * slope, 0.0)
+    return Jacobi(False, complement, landen, inner, 2.0 * quarter, 0.5 / quarter, scale, q,
+                  trigonometric_ratio(q), even, odd, scale * slope, 0.0)
 
 
 @formula
@@ -83,10 +82,10 @@ def hyperbolic_constants(complement, landen, inner, quarter, other, height):
     period, inverse_period, turn = 0.0, 0.0, 0.0
     if quarter < math.inf:
         period, inverse_period = 2.0 * quarter, 0.5 / quarter
-        _, _, real, imaginary = hyperbolic(reach, reach, q, ratio, even, odd)
+        _, _, real, imaginary = hyperbolic(reach, q, ratio, even, odd)
         turn = 2.0 * math.atan2(imaginary, real)
-    return Jacobi(True, complement, landen, inner, period, inverse_period, scale, reach, q, ratio,
-                  even, odd, scale * slope, turn)
+    return Jacobi(True, complement, landen, inner, period, inverse_period, scale, q, ratio, even,
+                  odd, scale * slope, turn)
 
 
 @formula
@@ -112,7 +111,7 @@ def jacobi_constants(parameter, complement, height):
 @formula
 def circular():
     """Return the Jacobi of parameter 0: sine, cosine and 1, without a phase."""
-    return Jacobi(False, 1.0, 1.0, 1.0, math.pi, 1.0 / math.pi, 1.0, 0.5 * math.pi, 0.0, 1.0,
+    return Jacobi(False, 1.0, 1.0, 1.0, math.pi, 1.0 / math.pi, 1.0, 0.0, 1.0,
                   (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), 0.0, 0.0)
 
 
@@ -128,8 +127,8 @@ def jacobi(constants, u):
     turns = math.floor(u * constants.inverse_period + 0.5)
     x = constants.scale * (u - turns * constants.period)
     if constants.hyperbolic:
-        s, c, real, imaginary = hyperbolic(x, constants.reach, constants.nome, constants.ratio,
-                                           constants.even, constants.odd)
+        s, c, real, imaginary = hyperbolic(x, constants.nome, constants.ratio, constants.even,
+                                           constants.odd)
     else:
         s, c, real, imaginary = trigonometric(x, constants.nome, constants.ratio, constants.even,
                                               constants.odd)
@@ -137,7 +136,7 @@ def jacobi(constants, u):
     s, c = (constants.landen * s * math.sqrt(s * s + c * c),
             c * math.sqrt(c * c + constants.inner * s * s))
     size = math.sqrt(s * s + c * c)
-    if turns % 2 == 1:
+    if 0.5 * turns != math.floor(0.5 * turns):
         size = -size
     s, c = s / size, c / size
     return (s, c, math.sqrt(c * c + constants.complement * s * s), turns * constants.turn, real,

@@ -13,7 +13,9 @@ Source: Landau and Lifshitz, Mechanics (1976), sections 25 and 26.
 
 import math
 
+from .phase import angle_in_two, cosine_and_sine, root_in_two
 from .phi import phi_1
+from .two_sum import two_product, two_sum
 from ...physics.jit import formula
 
 _TERMS = 26
@@ -35,14 +37,19 @@ def series_of_p(x, y):
 
 
 @formula
-def swinging(t, g, square):
-    """Return C, S, S' and P at time t where w > g; square: w^2."""
-    frequency = math.sqrt(square - g * g)
-    angle, decay = frequency * t, math.exp(-g * t)
+def swinging(t, g, square, t_left, square_left):
+    """Return C, S, S' and P at time t + t_left where w > g; square + square_left: w^2."""
+    damped, damped_left = two_product(g, g)
+    difference, left = two_sum(square, -damped)
+    difference, left = two_sum(difference, left + (square_left - damped_left))
+    frequency, left = root_in_two(difference, left)
+    angle, left = angle_in_two(frequency, left, t, t_left)
+    cosine, sine = cosine_and_sine(angle, left)
+    decay = math.exp(-g * t)
     s = decay * t
     if angle != 0.0:
-        s *= math.sin(angle) / angle
-    cosine = decay * math.cos(angle)
+        s *= sine / angle
+    cosine *= decay
     c = cosine + g * s
     y = square * t * t
     p = t * (t * series_of_p(2.0 * g * t, y)) if y < 1.0 else (1.0 - c) / square
@@ -71,10 +78,14 @@ def creeping(t, g, square):
 
 
 @formula
-def responses(t, g, square):
-    """Return C, S, S' and P at time t >= 0 [s]; g: [1/s], square: w^2 [1/s^2]."""
+def responses(t, g, square, t_left=0.0, square_left=0.0):
+    """
+    Return C, S, S' and P at time t >= 0 [s]; g: [1/s], square: w^2 [1/s^2].
+
+    t_left, square_left: what rounding has left out of t and square.
+    """
     if square > g * g:
-        return swinging(t, g, square)
+        return swinging(t, g, square, t_left, square_left)
     return creeping(t, g, square)
 
 

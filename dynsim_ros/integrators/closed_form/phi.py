@@ -24,12 +24,27 @@ def phi_1(x):
 
 
 @formula
-def phi_2(x):
-    """Return (exp(-x) - 1 + x) / x^2: the mean of (1 - s) exp(-x s), 1 / 2 at x = 0."""
+def series_of_phi_2(x):
+    """Return phi_2(x) by its power series, even and odd powers side by side; |x| < 1."""
+    square = x * x
+    even, odd = _SERIES[-1], 0.0
+    for n in range(len(_SERIES) - 2, 0, -2):
+        odd = odd * square + _SERIES[n]
+        even = even * square + _SERIES[n - 1]
+    return even + x * odd
+
+
+@formula
+def decay_and_phis(x):
+    """
+    Return exp(-x), phi_1(x) and phi_2(x), at the cost of one exponential.
+
+    phi_2: (exp(-x) - 1 + x) / x^2, the mean of (1 - s) exp(-x s), 1 / 2 at x = 0.
+    """
     if abs(x) < 1.0:
-        total = 0.0
-        for n in range(len(_SERIES) - 1, -1, -1):
-            total = total * x + _SERIES[n]
-        return total
+        less = math.expm1(-x)
+        return 1.0 + less, (-less / x if x != 0.0 else 1.0), series_of_phi_2(x)
+    decay = math.exp(-x)
+    less = decay - 1.0
     # Divided twice: the square of a very large x is not finite.
-    return (math.expm1(-x) + x) / x / x
+    return decay, -less / x, (less + x) / x / x

@@ -37,10 +37,3 @@ def cancels(total, size):
     terms, in the same unit.
     """
     return norm(total) <= THRESHOLD * size
-
-
-@formula
-def at_rest(velocity, total, size):
-    """Return whether a velocity (3,) is exactly zero and a sum cancels; see there."""
-    return (velocity[0] == 0.0 and velocity[1] == 0.0 and velocity[2] == 0.0
-            and cancels(total, size))

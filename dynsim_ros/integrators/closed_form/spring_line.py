@@ -17,6 +17,7 @@ import math
 from typing import NamedTuple
 
 from .oscillator import oscillation, responses
+from .phase import quotient_in_two
 from ...physics.jit import formula
 from ...physics.vector import add, cross, dot, norm, scale, subtract
 
@@ -25,8 +26,9 @@ class SpringLine(NamedTuple):
     """
     A motion along a spring: L'' + 2 resistance L' + square (L - natural_length) = push.
 
-    length [m] and rate [m/s]: L and L' at time 0; direction: (3,) unit vector to the particle;
-    anchor: (3,) at time 0 [m]; anchor_velocity: (3,) [m/s].
+    length [m] and rate [m/s]: L and L' at time 0; square_left: what rounding left out of square;
+    direction: (3,) unit vector to the particle; anchor: (3,) at time 0 [m]; anchor_velocity: (3,)
+    [m/s].
     """
 
     length: float
@@ -34,6 +36,7 @@ class SpringLine(NamedTuple):
     natural_length: float
     resistance: float
     square: float
+    square_left: float
     push: float
     direction: tuple
     anchor: tuple
@@ -66,24 +69,25 @@ def spring_line(position, velocity, anchor, anchor_velocity, mass, stiffness, na
     push = drag / mass * dot(subtract(air, anchor_velocity), u)
     if acceleration is not None:
         push += dot(acceleration, u)
+    square, left = quotient_in_two(stiffness, mass)
     return SpringLine(length, dot(subtract(velocity, anchor_velocity), u), natural_length,
-                      0.5 * (damper + drag) / mass, stiffness / mass, push, u, anchor,
+                      0.5 * (damper + drag) / mass, square, left, push, u, anchor,
                       anchor_velocity)
 
 
 @formula
-def length_along_spring(line, t):
-    """Return L [m] and L' [m/s] at time t >= 0 [s], as if L could pass zero."""
-    c, s, slope, p = responses(t, line.resistance, line.square)
+def length_along_spring(line, t, t_left=0.0):
+    """Return L [m] and L' [m/s] at time t + t_left >= 0 [s], as if L could pass zero."""
+    c, s, slope, p = responses(t, line.resistance, line.square, t_left, line.square_left)
     y, rate = oscillation(line.length - line.natural_length, line.rate, line.push, line.square, c,
                           s, slope, p)
     return line.natural_length + y, rate
 
 
 @formula
-def along_spring(line, t):
-    """Return position and velocity in world at time t >= 0 [s]; line: SpringLine."""
-    length, rate = length_along_spring(line, t)
+def along_spring(line, t, t_left=0.0):
+    """Return position and velocity in world at time t + t_left >= 0 [s]; line: SpringLine."""
+    length, rate = length_along_spring(line, t, t_left)
     return (add(add(line.anchor, scale(t, line.anchor_velocity)), scale(length, line.direction)),
             add(line.anchor_velocity, scale(rate, line.direction)))
 

@@ -92,15 +92,20 @@ def hyperbolic_phase(q, c, s):
 
 
 @formula
-def hyperbolic(x, reach, q, ratio, even, odd):
+def hyperbolic(x, q, ratio, even, odd):
     """
-    Return what trigonometric does; |x| <= reach = pi K / (2 K') (u = K), which may be infinite.
+    Return what trigonometric does; |x| <= pi K / (2 K') (u = K), which may be infinite.
 
     Numerators and denominators are divided by powers of exp(|x|): none of them overflows.
     """
-    e = math.exp(-2.0 * abs(x))
-    sine = math.copysign(math.expm1(-2.0 * abs(x)), x)
-    y = math.exp(2.0 * (abs(x) - reach))
+    if abs(x) < 0.3:
+        less = math.expm1(-2.0 * abs(x))
+        e = 1.0 + less
+    else:
+        e = math.exp(-2.0 * abs(x))
+        less = e - 1.0
+    sine = math.copysign(less, x)
+    y = q / e if q > 0.0 else 0.0
     e2, e3 = e * e, e * e * e
     e4 = e2 * e2
     q2, q4 = q * q, q * q * q * q

@@ -19,26 +19,32 @@ import math
 from typing import NamedTuple
 
 from .jacobi import Jacobi, jacobi
+from .phase import angle_in_two, cosine_and_sine
+from .two_sum import two_product, two_sum
 from ...physics.jit import formula
 from ...physics.rotation import quaternion_product, rotate
 
 
 class TorqueFree(NamedTuple):
     """
-    What is computed once for a free rotation, by torque_free_setup.
+    What is computed once for a free rotation, by torque_free_in_full.
 
-    jacobi: the elliptic functions of the motion; rate: p [rad/s]; phase: v; circulation: 1 if
-    e_3 is the axis of the largest moment, -1 if it is that of the smallest; precession: what is
-    steady in half of chi' [rad/s]; direction, omega: (3,) amplitudes along e of L / |L| and of
-    the angular velocity [rad/s]; body: the rotation (w, x, y, z) from e to body axes; world: from
-    where L is e_3 to world.
+    jacobi: the elliptic functions of the motion; rate: p [rad/s]; phase: v; period: of sn^2, that
+    is 2 K / p [s], infinite without one; circulation: 1 if e_3 is the axis of the largest moment,
+    -1 if it is that of the smallest; precession: what is steady in half of chi' [rad/s];
+    period_left, precession_left: what rounding has left out of these; direction, omega: (3,)
+    amplitudes along e of L / |L| and of the angular velocity [rad/s]; body: the rotation
+    (w, x, y, z) from e to body axes; world: from where L is e_3 to world.
     """
 
     jacobi: Jacobi
     rate: float
     phase: float
+    period: float
+    period_left: float
     circulation: float
     precession: float
+    precession_left: float
     direction: tuple
     omega: tuple
     body: tuple
@@ -52,16 +58,16 @@ def conjugate(q):
 
 
 @formula
-def orientation_about_momentum(functions, circulation, angle, direction):
+def orientation_about_momentum(functions, circulation, angle, left, direction):
     """
     Return the orientation of e as seen along L.
 
-    functions: what jacobi returns; angle: what is steady in half of chi [rad].
+    functions: what jacobi returns; angle, left: two whose sum is what is steady in half of chi
+    [rad].
     """
     sn, cn, dn, apart, real, imaginary = functions
     x, y, z = direction[0] * cn, direction[1] * sn, 1.0 + direction[2] * dn
-    half = angle - circulation * apart
-    c, s = math.cos(half), math.sin(half)
+    c, s = cosine_and_sine(angle - circulation * apart, left)
     imaginary *= circulation
     c, s = c * real + s * imaginary, s * real - c * imaginary
     size = math.sqrt((c * c + s * s) * (x * x + y * y + z * z))
@@ -70,16 +76,33 @@ def orientation_about_momentum(functions, circulation, angle, direction):
 
 
 @formula
-def torque_free(motion, t):
-    """
-    Return orientation (w, x, y, z) and angular velocity (3,) in world [rad/s] at time t [s].
+def within_period(motion, t, t_left):
+    """Return u at time t + t_left, less whole periods 2 K, and the number of these."""
+    turns = float(math.floor(
+        t / motion.period + (motion.phase * motion.jacobi.inverse_period + 0.5)))
+    if turns == 0.0:
+        return motion.rate * t + motion.phase, turns
+    whole, left = two_product(turns, motion.period)
+    rest = (t - whole) + (t_left - left - turns * motion.period_left)
+    return motion.rate * rest + motion.phase, turns
 
-    motion: TorqueFree. Any t, also negative; the cost does not depend on it.
+
+@formula
+def torque_free(motion, t, t_left=0.0):
     """
-    functions = jacobi(motion.jacobi, motion.rate * t + motion.phase)
-    about = orientation_about_momentum(functions, motion.circulation, motion.precession * t,
-                                       motion.direction)
+    Return orientation (w, x, y, z) and angular velocity (3,) in world [rad/s] at time t + t_left.
+
+    motion: TorqueFree. Any t [s], also negative; the cost does not depend on it.
+    """
+    u, turns = within_period(motion, t, t_left)
+    sn, cn, dn, apart, real, imaginary = jacobi(motion.jacobi, u)
+    if 0.5 * turns != math.floor(0.5 * turns):
+        sn, cn = -sn, -cn
+    angle, left = angle_in_two(motion.precession, motion.precession_left, t, t_left)
+    behind, behind_left = two_product(turns, motion.circulation * motion.jacobi.turn)
+    angle, rest = two_sum(angle, -behind)
+    about = orientation_about_momentum((sn, cn, dn, apart, real, imaginary), motion.circulation,
+                                       angle, rest + (left - behind_left), motion.direction)
     axes = quaternion_product(motion.world, about)
-    sn, cn, dn = functions[:3]
     omega = (motion.omega[0] * cn, motion.omega[1] * sn, motion.omega[2] * dn)
     return quaternion_product(axes, conjugate(motion.body)), rotate(axes, omega)

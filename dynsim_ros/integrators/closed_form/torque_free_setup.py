@@ -77,7 +77,7 @@ def steady_rotation(q, omega):
     body = (1.0, 0.0, 0.0, 0.0)
     if rate > 0.0:
         body = quaternion_to((omega[0] / rate, omega[1] / rate, omega[2] / rate))
-    return TorqueFree(circular(), 0.0, 0.0, 1.0, 0.5 * rate,
+    return TorqueFree(circular(), 0.0, 0.0, math.inf, 0.0, 1.0, 0.5 * rate, 0.0,
                       (0.0, 0.0, 1.0), (0.0, 0.0, rate), body, quaternion_product(q, body))
 
 
@@ -136,10 +136,11 @@ def circling_rotation(moments, w, circulation, side, body, q):
     # half of chi' at u = 0, and how fast the complex number turns from there
     precession = (0.5 * (energy + momentum * omega[2]) / (momentum * (1.0 + direction[2]))
                   + circulation * constants.slope * rate)
-    about = orientation_about_momentum(jacobi(constants, phase), circulation, 0.0, direction)
+    about = orientation_about_momentum(jacobi(constants, phase), circulation, 0.0, 0.0, direction)
     world = quaternion_product(quaternion_product(q, body), conjugate(about))
-    return TorqueFree(constants, rate, phase, circulation, precession, direction, omega, body,
-                      world)
+    period = constants.period / rate if constants.period > 0.0 else math.inf
+    return TorqueFree(constants, rate, phase, period, 0.0, circulation, precession, 0.0, direction,
+                      omega, body, world)
 
 
 @formula

@@ -1,0 +1,157 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Whether everything is at rest and stays so.
+
+It does if no force and no moment is left, to the last bit; then the equilibrium may be unstable,
+as a motion that is integrated would not leave it either. If only rounding is left, every body
+must be pulled back by springs: the second derivatives of their energy with respect to small
+displacements and turns have no negative eigenvalue.
+
+Source: Goldstein, Poole and Safko, Classical Mechanics (2002), section 6.1.
+"""
+
+import math
+
+import numpy as np
+
+from ..closed_form import cancels, spring_size
+from ...physics.motion import apply_forces
+from ...physics.rotation import rotate
+from ...physics.vector import add, dot, norm, scale, subtract
+
+# An eigenvalue that is above minus this, relative to the stiffnesses, counts as not negative: in
+# an hour nothing visible comes of rounding there.
+_NEUTRAL = 1e-9
+
+
+class _Body:
+    """A body at rest, with the size of the terms of the sums of forces and moments."""
+
+    def __init__(self, position, orientation):
+        self.position, self.orientation = position, orientation
+        self.force_size = self.moment_size = 0.0
+
+    def arm(self, offset):
+        """Return the vector from the centre of mass to an attachment point, in world: (3,)."""
+        return rotate(self.orientation, offset) if any(offset) else offset
+
+
+def moves(model, state):
+    """Return whether anything moves in a state."""
+    bodies = len(model.mass)
+    return (state[3 * bodies:6 * bodies].any()
+            or state[6 * bodies + 4 * model.rigid:6 * bodies + 7 * model.rigid].any())
+
+
+def is_equilibrium(model, drive, start, holds):
+    """Return whether the state `start`, in which nothing moves, lasts; holds: from holds_of."""
+    if any(hold.anchor is not None and any(hold.anchor.velocity) for hold in holds):
+        return False
+    left = np.zeros_like(start)
+    apply_forces(model, drive._replace(works=None), 0.0, start, left)
+    return not left.any() or _is_rounding(model, drive, start, holds, left)
+
+
+def _is_rounding(model, drive, start, holds, left):
+    """Return whether what is left of forces and moments is rounding, in a stable place."""
+    bodies, rigid = len(model.mass), model.rigid
+    torque_at = 6 * bodies + 4 * rigid
+    if drive.pushes is not None and drive.pushes[torque_at:].any():
+        return False
+    if model.air is not None and model.air.rotational_drag and any(model.air.angular_velocity):
+        return False
+    things = [_Body(tuple(start[3 * i:3 * i + 3].tolist()),
+                    tuple(start[6 * bodies + 4 * i:6 * bodies + 4 * i + 4].tolist()))
+              for i in range(bodies)]
+    _add_sizes(model, drive, holds, things)
+    for i, thing in enumerate(things):
+        if not cancels(tuple(left[3 * (bodies + i):3 * (bodies + i) + 3].tolist()),
+                       thing.force_size):
+            return False
+        if i < rigid and not cancels(tuple(left[torque_at + 3 * i:torque_at + 3 * i + 3].tolist()),
+                                     thing.moment_size):
+            return False
+    return _is_stable(rigid, holds, things)
+
+
+def _add_sizes(model, drive, holds, things):
+    drag, wind = 0.0, (0.0, 0.0, 0.0)
+    if model.air is not None and model.air.linear_drag is not None:
+        drag, wind = model.air.linear_drag, model.air.velocity
+    for i, thing in enumerate(things):
+        thing.force_size = drag * norm(tuple(wind))
+        for rows in (model.weight, None if drive.pushes is None
+                     else drive.pushes[3 * len(things):6 * len(things)].reshape(-1, 3)):
+            if rows is not None:
+                thing.force_size += norm(tuple(rows[i].tolist()))
+    for hold in holds:
+        size = spring_size(hold.stiffness, hold.natural_length, _place(hold.p, things),
+                           _place(hold.q, things))
+        for end in (hold.p, hold.q):
+            if end.body is not None:
+                things[end.body].force_size += size
+                things[end.body].moment_size += size * norm(end.offset)
+
+
+def _place(end, things):
+    if end.body is None:
+        return end.position
+    thing = things[end.body]
+    return add(thing.position, thing.arm(end.offset))
+
+
+def _is_stable(rigid, holds, things):
+    """Return whether no small displacement or turn sets energy free."""
+    size = 3 * (len(things) + rigid)
+    curvature, largest = np.zeros((size, size)), np.zeros(size)
+    for hold in holds:
+        more = _curvature(hold, rigid, things, size)
+        if more is None:
+            return False
+        curvature += more
+        largest += abs(more).diagonal()
+    largest[largest == 0.0] = 1.0
+    scaling = 1.0 / np.sqrt(largest)
+    return _is_positive(curvature * scaling * scaling[:, np.newaxis] + _NEUTRAL * np.eye(size))
+
+
+def _curvature(hold, rigid, things, size):
+    """Return the second derivatives of a spring's energy; None where there are none."""
+    r = subtract(_place(hold.q, things), _place(hold.p, things))
+    length = norm(r)
+    if length == 0.0 and hold.natural_length > 0.0:
+        return None
+    u = scale(1.0 / length, r) if length > 0.0 else r
+    pull = hold.stiffness * (length - hold.natural_length)
+    across = pull / length if length > 0.0 else hold.stiffness
+    # how each component of the way of Q from P depends on displacements and turns
+    way, more = np.zeros((3, size)), np.zeros((size, size))
+    for end, sign in ((hold.p, -1.0), (hold.q, 1.0)):
+        if end.body is None:
+            continue
+        way[:, 3 * end.body:3 * end.body + 3] += sign * np.eye(3)
+        if end.body < rigid:
+            a = things[end.body].arm(end.offset)
+            turn = slice(3 * (len(things) + end.body), 3 * (len(things) + end.body) + 3)
+            way[:, turn] += sign * np.array([[0, a[2], -a[1]], [-a[2], 0, a[0]], [a[1], -a[0], 0]])
+            bend = np.outer(u, a)
+            more[turn, turn] += sign * pull * (0.5 * (bend + bend.T) - dot(u, a) * np.eye(3))
+    along = np.outer(u, u)
+    stiffness = hold.stiffness * along + across * (np.eye(3) - along)
+    for i in range(3):
+        for j in range(3):
+            more += stiffness[i, j] * np.outer(way[i], way[j])
+    return more
+
+
+def _is_positive(matrix):
+    """Return whether a symmetric matrix has positive eigenvalues only, by Cholesky's method."""
+    matrix = matrix.copy()
+    for i in range(len(matrix)):
+        pivot = matrix[i, i]
+        if not pivot > 0.0:
+            return False
+        row = matrix[i, i + 1:] / math.sqrt(pivot)
+        matrix[i + 1:, i + 1:] -= np.outer(row, row)
+    return True

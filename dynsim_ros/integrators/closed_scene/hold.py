@@ -1,0 +1,68 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The springs of a model one by one, as far as they act, and where their ends are."""
+
+from typing import NamedTuple
+
+
+class End(NamedTuple):
+    """
+    One end of a spring.
+
+    body: its index, None at an anchor; offset: (3,) body-fixed [m]; position, velocity: (3,) of
+    the anchor in world [m, m/s], None on a body.
+    """
+
+    body: int | None
+    offset: tuple
+    position: tuple | None
+    velocity: tuple | None
+
+
+class Hold(NamedTuple):
+    """A spring between two Ends; SI units, damping 0 without a damper."""
+
+    p: End
+    q: End
+    stiffness: float
+    natural_length: float
+    damping: float
+
+    @property
+    def anchor(self):
+        """Return the End at an anchor, or None."""
+        return next((end for end in (self.p, self.q) if end.body is None), None)
+
+    @property
+    def end(self):
+        """Return the (first) End on a body."""
+        return self.q if self.q.body is not None else self.p
+
+
+def springs_act(model):
+    """Return whether any spring pulls or damps."""
+    return any(group.stiffness.any() or group.damping is not None and group.damping.any()
+               for group in model.springs or ())
+
+
+def holds_of(model, anchors):
+    """Return the Holds of a model, without those that neither pull nor damp."""
+    holds = []
+    for group in model.springs or ():
+        for s, (stiffness, natural_length) in enumerate(zip(group.stiffness.tolist(),
+                                                            group.natural_length.tolist())):
+            damping = 0.0 if group.damping is None else float(group.damping[s])
+            if stiffness > 0.0 or damping > 0.0:
+                holds.append(Hold(_end(group.p, s, anchors), _end(group.q, s, anchors), stiffness,
+                                  natural_length, damping))
+    return holds
+
+
+def _end(ends, s, anchors):
+    zero = (0.0, 0.0, 0.0)
+    if ends.anchor is not None:
+        row = anchors[ends.anchor[s]].tolist()
+        return End(None, zero, tuple(row[:3]), tuple(row[3:]))
+    if ends.particle is not None:
+        return End(int(ends.particle[s]), zero, None, None)
+    return End(int(ends.body[s]), tuple(ends.offset[s].tolist()), None, None)
