@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The choice between closed forms and steps: from each beginning on, whichever is possible."""
 
-from .adaptive_steps import BUDGET
 from .closed_motion import ClosedMotion
 
 
@@ -11,10 +10,10 @@ class AutoMotion:
     Advances a state in closed form where it can be, else in steps; used as either.
 
     new_steps: returns the AutoSteps of the model; called, and compiled, when first needed; budget:
-    see Walk.
+    see Walk, None for the usual one.
     """
 
-    budget = BUDGET
+    budget = None
 
     def __init__(self, model, drive, new_steps):
         self._new_steps = new_steps
@@ -41,7 +40,8 @@ class AutoMotion:
     def _all_steps(self):
         if self._steps is None:
             self._steps = self._new_steps()
-            self._steps.budget = self.budget
+            if self.budget is not None:
+                self._steps.budget = self.budget
         return self._steps
 
     def begin(self, time_ns, state):
