@@ -41,7 +41,7 @@ run: $(VENV)/ready
 	@exec tools/in_venv sim_node --status --ros-args $(PARAMETERS) $(ARGS)
 
 test: $(VENV)/ready_for_tests
-	@exec tools/in_venv python -m pytest $(ARGS)
+	@exec tools/in_venv python -m pytest -n 2 --dist loadfile $(ARGS)
 
 bench: $(VENV)/ready_for_benchmarks
 	@tools/in_venv python benchmarks/work_precision.py $(ARGS)

@@ -74,6 +74,7 @@ setup(
             'mpmath>=1.2,<2',
             'pytest>=7.4,<9',
             'pytest-timeout>=2.1,<3',
+            'pytest-xdist>=3,<4',
             'rosbags>=0.10,<1',
             'ruff>=0.11,<1',
             'scipy>=1.9,<2',

@@ -7,7 +7,7 @@ Every method takes a step from y, with the rate of y where it needs it, and esti
 the loop accepts or repeats it, and chooses the next step. Steps lie where the method puts them;
 the state at an instant within a step comes from the method's dense output.
 
-The clock is an array of float64, see BASE to LARGEST; times in it are [s] since BASE, a whole
+The clock is an array of float64, see BASE to FLOOR; times in it are [s] since BASE, a whole
 number of seconds after the beginning, so that they keep their last bits in the longest run.
 """
 
@@ -31,11 +31,11 @@ from ..physics.motion import rates
 from ..physics.state import counts, moving_size, normalise
 
 # The clock: whole seconds, end and length of the last step, length of the next one,
-# logarithm of the last error estimate over the tolerance, the largest accepted such ratio, whether
-# the dense output of the last step is built; for how many steps the watch has seen what it waits
-# for, and the steps have become shorter; what rounding leaves of the error estimate of a step.
-BASE, END, STEP, NEXT, LAST_ERROR, LARGEST, DENSE, WATCHED, SHRUNK, FLOOR = range(10)
-CLOCK_SIZE = 10
+# logarithm of the last error estimate over the tolerance, whether the dense output of the last
+# step is built; for how many steps the watch has seen what it waits for, and the steps have become
+# shorter; what rounding leaves of the error estimate of a step.
+BASE, END, STEP, NEXT, LAST_ERROR, DENSE, WATCHED, SHRUNK, FLOOR = range(9)
+CLOCK_SIZE = 9
 # What is counted: steps, rejected steps, evaluations of the right-hand side in a row, steps that
 # were accepted at the limit of rounding.
 STEPS, REJECTED, EVALUATIONS, ROUNDED = range(4)
@@ -73,9 +73,10 @@ class Tableaux(NamedTuple):
 
 class Grid(NamedTuple):
     """
-    Instants at which states are wanted; None where only the end of a step is.
+    Instants at which states are wanted.
 
     first, period: [ns] since the beginning; states: (n, size), filled; done: (1,) how many are.
+    Where only the end of a step is wanted: one instant that is never reached.
     """
 
     first: int
@@ -148,37 +149,28 @@ def place_in_step(grid, number, clock):
 def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y, rate,
               y_new, rate_new, error, memory, dense):
     """Write the states of the grid that lie in the last step; build the dense output first."""
-    if grid is not None:
-        lanes = lane_row(model.several, memory, 1, size)
-        while grid.done[0] < grid.states.shape[0]:
-            done = grid.done[0]
+    lanes = lane_row(model.several, memory, 1, size)
+    while grid.done[0] < grid.states.shape[0]:
+        done = grid.done[0]
+        memory[0] = place_in_step(grid, done, clock)
+        if memory[0] > 1.0:
+            break
+        if clock[DENSE] == 0.0:
+            counted[EVALUATIONS] += build_dense(
+                tableaux.stiff, tableaux.dop853, tableaux.radau, model, drive,
+                tableaux.dense, size, clock[BASE] + clock[END] - clock[STEP], clock[STEP], y,
+                rate, y_new, rate_new, memory, dense)
+            clock[DENSE] = 1.0
             memory[0] = place_in_step(grid, done, clock)
-            if memory[0] > 1.0:
-                break
-            if clock[DENSE] == 0.0:
-                counted[EVALUATIONS] += build_dense(
-                    tableaux.stiff, tableaux.dop853, tableaux.radau, model, drive,
-                    tableaux.dense, size, clock[BASE] + clock[END] - clock[STEP], clock[STEP], y,
-                    rate, y_new, rate_new, memory, dense)
-                clock[DENSE] = 1.0
-                memory[0] = place_in_step(grid, done, clock)
-            together = 1
-            if done + COUNT <= grid.states.shape[0]:
-                for k in range(1, COUNT):
-                    memory[k] = place_in_step(grid, done + k, clock)
-                if memory[COUNT - 1] <= 1.0:
-                    together = COUNT
-            write_states(bodies, rigid, size, dense, done, together, memory, error, lanes,
-                         grid.states)
-            grid.done[0] = done + together
-
-
-@formula
-def is_finished(grid, clock, target):
-    """Return whether all is done: the grid, or the time `target` [s] since BASE is reached."""
-    if grid is not None:
-        return grid.done[0] >= grid.states.shape[0]
-    return clock[END] >= target
+        together = 1
+        if done + COUNT <= grid.states.shape[0]:
+            for k in range(1, COUNT):
+                memory[k] = place_in_step(grid, done + k, clock)
+            if memory[COUNT - 1] <= 1.0:
+                together = COUNT
+        write_states(bodies, rigid, size, dense, done, together, memory, error, lanes,
+                     grid.states)
+        grid.done[0] = done + together
 
 
 @formula
@@ -232,7 +224,7 @@ def prepare(model, drive, power, tolerance, fastest, clock, states, memory):
 def advance(model, drive, tableaux, power, tolerance, limit, budget, watch, clock, counted, states,
             memory, dense, grid):
     """
-    Take steps until the grid is filled, or (without one) until `limit` is reached.
+    Take steps until the grid is filled, or `limit` is reached.
 
     power: of h in the error estimate; tolerance: of the run, in the norm of error_norm; limit:
     [ns] since the beginning: a step ends there, and none goes on; budget: the most attempts;
@@ -260,7 +252,7 @@ def advance(model, drive, tableaux, power, tolerance, limit, budget, watch, cloc
             fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y,
                       rate, y_new, rate_new, error, memory, dense)
         target = (limit - np.int64(clock[BASE]) * 1000000000) * 1e-9
-        if is_finished(grid, clock, target) or clock[END] >= target:
+        if grid.done[0] >= grid.states.shape[0] or clock[END] >= target:
             break
         if budget <= 0:
             status = BUDGET_SPENT
@@ -315,7 +307,6 @@ def advance(model, drive, tableaux, power, tolerance, limit, budget, watch, cloc
                     clock[SHRUNK] = 0.0
                     factor = _FASTEST
                 clock[LAST_ERROR] = logarithm
-                clock[LARGEST] = max(clock[LARGEST], ratio)
                 longer = h * min(max(factor, _SLOWEST), _FASTEST)
                 # A step that was cut short says nothing against the length it would have had.
                 clock[NEXT] = max(longer, natural) if h < natural else longer

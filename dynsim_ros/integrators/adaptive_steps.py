@@ -66,7 +66,7 @@ class Walk:
 
     def end_at(self, time_ns):
         """Return the state at an instant at which a step ends."""
-        self.go(time_ns - self.current.origin, None)
+        self.go(time_ns - self.current.origin, self.current.nowhere)
         return self.current.states[1].copy()
 
     def cut(self, time_ns):
@@ -94,7 +94,8 @@ class AdaptiveSteps(Walk):
         self.states, self._dense = np.zeros((4, size)), np.zeros((DENSE_SIZE, size))
         self.origin = 0
         self._fastest = spring_rates(model)[0] / EXPLICIT_REACH
-        self._prepare, self._advance = None, {}
+        self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))
+        self._prepare = self._advance = None
 
     @property
     def current(self):
@@ -129,22 +130,21 @@ class AdaptiveSteps(Walk):
 
     def prepare(self):
         """Compile, or load from the cache, what the steps need, or do nothing."""
-        none = np.empty((0, self.states.shape[1]))
-        self.run(FAR, Grid(0, 1, none, np.zeros(1, dtype=np.int64)))
+        self.run(-1, self.nowhere)
 
     @property
     def attempts(self):
         """Return how many steps were attempted."""
         return int(self.counts[STEPS] + self.counts[REJECTED])
 
-    def run(self, limit, grid=None, budget=BUDGET):
+    def run(self, limit, grid, budget=BUDGET):
         """Take steps until the grid is filled or the limit reached; return what ended them."""
         arguments = (self._model, self._drive, self.method.tableaux, self.method.power,
                      self.tolerance, limit, budget, self.watch, self.clock, self.counts,
                      self.states, self._memory, self._dense, grid)
-        if (grid is None) not in self._advance:
-            self._advance[grid is None] = entry(advance, *arguments)
-        return self._advance[grid is None](*arguments)
+        if self._advance is None:
+            self._advance = entry(advance, *arguments)
+        return self._advance(*arguments)
 
     def go(self, limit, grid):
         """Take steps as run does; raise IntegrationError if the method cannot go on."""

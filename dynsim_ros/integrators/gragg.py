@@ -11,11 +11,10 @@ Differential Equations I, II.9. That the sequences are independent is as old; in
 the step of order 16 takes as long as the 15 evaluations of its longest sequence and one more.
 """
 
-from .lane_schedule import (ENDS, FIRST, FIRST_ERROR, FIRST_WEIGHT, schedule, SECOND,
-                            SECOND_ERROR, SECOND_WEIGHT)
+from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .memory import lane_row
 from ..physics.jit import part
-from ..physics.lanes import choose, COUNT, lanes_at, spread, total
+from ..physics.lanes import choose, COUNT, lanes_at, spread
 from ..physics.motion import rates
 
 STAGES = 8
@@ -78,9 +77,6 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
         midpoint(model, drive, size, now, h, y, b, a, state, f)
         now = now + h
     second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1 - plan.rows % 2))
-    w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
-    e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
     for i in range(size):
-        other = choose(second, b[i], 0.0)
-        y_new[i] = y[i] + total(w_1 * first[i] + w_2 * other)
-        error[i] = total(e_1 * first[i] + e_2 * other)
+        b[i] = choose(second, b[i], 0.0)
+    combine(table, size, y, first, b, y_new, error)

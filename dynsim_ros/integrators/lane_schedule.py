@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..physics.lanes import COUNT
+from ..physics.jit import formula
+from ..physics.lanes import COUNT, lanes_at, total
 
 # Places of the parts of a table; each is a row of four, one number for each lane.
 FIRST, SECOND = 0, 4
@@ -35,6 +36,21 @@ class Schedule(NamedTuple):
     rows: int
     first_end: int
     table: np.ndarray
+
+
+@formula
+def combine(table, size, y, first, second, y_new, error):
+    """
+    Write the extrapolated state and the estimate of its error.
+
+    table: of the Schedule; y: Cells, state at the start of the step; first, second: Cells of
+    Lanes, what the sequences of each lane have reached, less y; 0 where there is no second one.
+    """
+    w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
+    e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
+    for i in range(size):
+        y_new[i] = y[i] + total(w_1 * first[i] + w_2 * second[i])
+        error[i] = total(e_1 * first[i] + e_2 * second[i])
 
 
 def extrapolation_weights(substeps, power):

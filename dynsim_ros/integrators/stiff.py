@@ -10,12 +10,11 @@ Deuflhard, SIAM Review 27 (1985) 505; Hairer, Wanner, Solving Ordinary Different
 IV.9.
 """
 
-from .lane_schedule import (ENDS, FIRST, FIRST_ERROR, FIRST_WEIGHT, schedule, SECOND,
-                            SECOND_ERROR, SECOND_WEIGHT)
+from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .linearly_implicit import linearly_implicit_substep
 from .memory import lane_row
 from ..physics.jit import formula
-from ..physics.lanes import choose, COUNT, lanes_at, spread, total
+from ..physics.lanes import choose, COUNT, lanes_at, spread
 
 STAGES = 7
 
@@ -52,8 +51,4 @@ def stiff(model, drive, plan, size, t, step, y, memory, y_new, error):
                 here[i] = choose(ended, y[i], here[i])
             now = choose(ended, t, now)
             h = choose(ended, h_second, h)
-    w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
-    e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
-    for i in range(size):
-        y_new[i] = y[i] + total(w_1 * first[i] + w_2 * second[i])
-        error[i] = total(e_1 * first[i] + e_2 * second[i])
+    combine(table, size, y, first, second, y_new, error)

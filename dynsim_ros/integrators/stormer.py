@@ -10,11 +10,10 @@ costs half of the evaluations that Gragg's rule needs.
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.14.
 """
 
-from .lane_schedule import (ENDS, FIRST, FIRST_ERROR, FIRST_WEIGHT, schedule, SECOND,
-                            SECOND_ERROR, SECOND_WEIGHT)
+from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .memory import lane_row
 from ..physics.jit import formula
-from ..physics.lanes import choose, COUNT, lanes_at, spread, total
+from ..physics.lanes import choose, COUNT, lanes_at, spread
 from ..physics.motion import accelerations
 from ..physics.state import counts
 
@@ -109,10 +108,7 @@ def stormer(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
             per_h = choose(ended, 1.0 / h_second, per_h)
             h = choose(ended, h_second, h)
     second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1))
-    w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
-    e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
     for i in range(size):
-        other = choose(second, reached[i], 0.0)
-        y_new[i] = y[i] + total(w_1 * first[i] + w_2 * other)
-        error[i] = total(e_1 * first[i] + e_2 * other)
+        reached[i] = choose(second, reached[i], 0.0)
+    combine(table, size, y, first, reached, y_new, error)
     push_work(drive.works, drive.pushes, bodies, y, y_new)

@@ -92,7 +92,7 @@ def body_order(scene):
 
 
 def build_model(scene):
-    """Return the Model of a Scene."""
+    """Return the Model of a Scene; what is zero is absent."""
     bodies = body_order(scene)
     inertias = [body_inertia(body) for body in bodies if isinstance(body, Rigid)]
     is_round = [isinstance(inertia, float) for inertia in inertias]
@@ -100,10 +100,11 @@ def build_model(scene):
     round_body, general_body = np.flatnonzero(is_round), np.flatnonzero(np.logical_not(is_round))
     matrices = np.array([inertias[i] for i in general_body]) if len(general_body) else None
     weight = None
-    if scene.gravity is not None:
+    if scene.gravity:
         weight = np.array([gravity_force.py_func(body.mass, scene.gravity, scene.down)
                            for body in bodies])
-    springs = _spring_groups(scene, bodies)
+    springs = [spring for spring in scene.springs if spring.stiffness or spring.damping]
+    groups = _spring_groups(scene, springs, bodies)
     return Model(
         mass=np.array([body.mass for body in bodies]), rigid=len(inertias),
         several=len(bodies) if len(bodies) > 1 else None,
@@ -112,31 +113,31 @@ def build_model(scene):
         general_body=general_body if len(general_body) else None,
         inertia=matrices,
         inverse_inertia=None if matrices is None else np.array([*map(inverse, matrices)]),
-        weight=weight, springs=springs,
-        connections=len(scene.springs) if len(scene.springs) > 1 else None,
-        spring_bodies=_spring_bodies(springs), air=_air(scene, inertias))
+        weight=weight, springs=groups, connections=len(springs) if len(springs) > 1 else None,
+        spring_bodies=_spring_bodies(groups), air=_air(scene, inertias))
 
 
 def _air(scene, inertias):
     air = scene.air
     if air is None:
         return None
-    rotational = air.rotational_drag if inertias else None
-    if air.linear_drag is None and rotational is None:
+    linear = air.linear_drag or None
+    rotational = (air.rotational_drag or None) if inertias else None
+    if linear is None and rotational is None:
         return None
-    return ModelAir(air.linear_drag, rotational, air.velocity, air.angular_velocity)
+    return ModelAir(linear, rotational, air.velocity, air.angular_velocity)
 
 
-def _spring_groups(scene, bodies):
-    if not scene.springs:
+def _spring_groups(scene, springs, bodies):
+    if not springs:
         return None
     index = {member.name: i for members in (bodies, scene.anchors)
              for i, member in enumerate(members)}
     groups = {}
-    for spring in scene.springs:
+    for spring in springs:
         ends = ((scene.ends[spring.from_], spring.from_offset),
                 (scene.ends[spring.to], spring.to_offset))
-        kind = (*(_end_kind(member) for member, _ in ends), spring.damping is not None)
+        kind = (*(_end_kind(member) for member, _ in ends), bool(spring.damping))
         groups.setdefault(kind, []).append((spring, *ends))
     return tuple(_group(kind, members, index) for kind, members in groups.items())
 

@@ -74,6 +74,7 @@ class _Last:
     """Takes the snapshots of a run and keeps the last one."""
 
     def snapshot(self, snapshot, tick_ns):
+        """Keep a snapshot, in place of the one before."""
         self.state = snapshot
 
     def command(self, time_ns, command):

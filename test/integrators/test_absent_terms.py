@@ -3,7 +3,7 @@
 """
 What a scene lacks is not computed: operations counted, calls listed, machine code looked at.
 
-And a term whose value is zero changes no bit against one that is absent.
+And anchors, pushes and works that could be there but are not change no bit.
 """
 
 from dataclasses import replace
@@ -12,7 +12,7 @@ import sys
 
 from by_hand import ByHand
 from dynsim_ros.physics.motion import rates
-from dynsim_ros.scene import Air, parse_scene
+from dynsim_ros.scene import parse_scene
 import numba
 import numpy as np
 import pytest
@@ -185,18 +185,10 @@ BOX = load('box_by_its_corner')[0]
 
 @pytest.mark.parametrize('method', METHODS)
 @pytest.mark.parametrize('scene', [EVERYTHING, BOX], ids=['sphere', 'box'])
-def test_zero_changes_no_bit_against_nothing(method, scene):
-    spring, still = scene.springs[0], replace(scene, gravity=None, air=None)
-    undamped = replace(still, springs=(replace(spring, damping=None),))
-    wind = Air(velocity=(1, 2, 3), angular_velocity=(3, 2, 1))
+def test_a_still_drive_changes_no_bit_against_none(method, scene):
+    undamped = replace(scene, springs=(replace(scene.springs[0], damping=None),), gravity=None,
+                       air=None)
     exact = ByHand(undamped, method).run(0.03, 2)
-    for zero in (replace(undamped, gravity=0.0),
-                 replace(undamped, springs=(replace(spring, damping=0.0),)),
-                 replace(undamped, air=replace(wind, linear_drag=0.0)),
-                 replace(undamped, air=replace(wind, rotational_drag=0.0)),
-                 replace(undamped, gravity=0.0, air=replace(wind, linear_drag=0.0,
-                                                            rotational_drag=0.0))):
-        np.testing.assert_array_equal(ByHand(zero, method).run(0.03, 2), exact)
     for drive in ({'moving': True}, {'pushes': np.zeros(len(exact[0]))}, {'works': True},
                   {'moving': True, 'pushes': np.zeros(len(exact[0])), 'works': True}):
         found = ByHand(undamped, method, **drive).run(0.03, 2)
@@ -205,11 +197,8 @@ def test_zero_changes_no_bit_against_nothing(method, scene):
 
 @pytest.mark.parametrize('drive', [{'moving': True}, {'pushes': np.zeros(10)}, {'works': True}],
                          ids=lambda drive: next(iter(drive)))
-def test_zero_changes_no_bit_of_a_particle(drive):
+def test_a_still_drive_changes_no_bit_of_a_particle(drive):
     scene = load('S1')[0]
     exact = ByHand(scene, 'stormer').run(0.2, 3)
     found = ByHand(scene, 'stormer', **drive).run(0.2, 3)
     np.testing.assert_array_equal(found[:, :-4], exact[:, :-4])
-    still = replace(scene, gravity=None)
-    np.testing.assert_array_equal(ByHand(replace(scene, gravity=0.0), 'stormer').run(0.2, 3),
-                                  ByHand(still, 'stormer').run(0.2, 3))

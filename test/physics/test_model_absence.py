@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a scene lacks is None in its model, not zero."""
+"""What a scene lacks, or has as zero, is None in its model."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ def test_a_bare_particle_has_a_mass_and_nothing_else():
 
 
 def test_gravity():
-    assert build_model(replace(BARE, gravity=0.0)).weight is not None
+    assert build_model(replace(BARE, gravity=0.0)).weight is None
     assert build_model(load_scene('spinning_box')).weight is None
 
 
@@ -30,6 +30,31 @@ def test_springs_and_dampers():
     assert [group.damping for group in groups] == [None]
     assert build_model(load_scene('sphere_on_spring')).springs[0].damping is not None
     assert build_model(load_scene('falling_in_wind')).springs is None
+
+
+def test_springs_that_pull_at_nothing():
+    scene = load_scene('two_anchors')
+    first, second = scene.springs
+
+    def springs(*springs):
+        model = build_model(replace(scene, springs=springs))
+        groups = model.springs or ()
+        return [group.stiffness.tolist() for group in groups], model.connections
+
+    def loose(spring):
+        return replace(spring, stiffness=0.0, damping=0.0)
+
+    assert springs(loose(first), loose(second)) == ([], None)
+    assert springs(loose(first), second) == ([[second.stiffness]], None)
+    assert springs(first, loose(second)) == ([[first.stiffness]], None)
+    # a damper without a spring is something
+    assert springs(replace(first, stiffness=0.0, damping=1.0))[0] == [[0.0]]
+
+
+def test_a_damper_of_zero_is_none():
+    scene = load_scene('sphere_on_spring')
+    undamped = replace(scene, springs=(replace(scene.springs[0], damping=0.0),))
+    assert [group.damping for group in build_model(undamped).springs] == [None]
 
 
 def test_ends_of_springs():
@@ -42,7 +67,9 @@ def test_ends_of_springs():
 
 @pytest.mark.parametrize('air, drags', [
     (None, None), (Air(), None), (Air(velocity=(1, 0, 0)), None),
-    (Air(linear_drag=1), (1.0, None)), (Air(rotational_drag=2), (None, 2.0))])
+    (Air(linear_drag=1), (1.0, None)), (Air(rotational_drag=2), (None, 2.0)),
+    (Air(linear_drag=0, rotational_drag=2), (None, 2.0)),
+    (Air(linear_drag=0, rotational_drag=0, velocity=(1, 0, 0)), None)])
 def test_air(air, drags):
     model = build_model(Scene(bodies=(Sphere(name='s', mass=1, radius=1),), air=air))
     assert (model.air and model.air[:2]) == drags

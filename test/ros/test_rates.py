@@ -73,7 +73,8 @@ def test_as_fast_as_possible(client):
     assert client.set_group({'rate': 100.0, 'real_time_factor': 0.0}).successful
     client.pause(False)
     client.more('/diagnostics')
-    assert float(told(client)['real-time factor']) > 3.0
+    # a method that is compiled meanwhile holds it up, once
+    client.wait(lambda: float(told(client)['real-time factor']) > 3.0)
     assert client.pause().success
     missed = told(client)['missed ticks']
     assert client.configure({'real_time_factor': 1.0})[0].successful
