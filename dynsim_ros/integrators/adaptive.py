@@ -36,6 +36,8 @@ from ..physics.state import counts, moving_size, normalise
 # shorter; what rounding leaves of the error estimate of a step.
 BASE, END, STEP, NEXT, LAST_ERROR, DENSE, WATCHED, SHRUNK, FLOOR = range(9)
 CLOCK_SIZE = 9
+# Length of the last step before the first one.
+TO_BEGIN = -1.0
 # What is counted: steps, rejected steps, evaluations of the right-hand side in a row, steps that
 # were accepted at the limit of rounding.
 STEPS, REJECTED, EVALUATIONS, ROUNDED = range(4)
@@ -180,25 +182,20 @@ def begin_rates(stiff_plan, model, drive, t, y, rate):
         rates(model, drive, t, y, rate)
 
 
-@kernel
-def prepare(model, drive, power, tolerance, fastest, clock, states, memory):
+@formula
+def begin(model, drive, bodies, rigid, size, power, tolerance, fastest, clock, y, rate, ahead,
+          change):
     """
-    Let a run begin in the state states[1] at the time of the clock; arguments as for advance.
+    Let a run begin in the state y at the time of the clock; writes its rates.
 
     fastest: rate of its springs [1/s]: lengths are known to some units of their last place, which
-    springs turn into velocities times their rate.
+    springs turn into velocities times their rate; ahead, change: Cells to use; else as advance.
 
     The first step is as long as the clock says; where it says nothing, as Hairer's rule has it:
     from the sizes of the rates and of their change over a small step.
     """
-    bodies, rigid = counts(model)
-    size = moving_size(drive.works, bodies, rigid)
-    y = number_row(model.several, memory, 0, size)
-    rate = number_row(model.several, memory, 2, size)
     t = clock[BASE] + clock[END]
-    load(size, states[1], y)
     rates(model, drive, t, y, rate)
-    store(size, rate, states[3])
     reach = 1.0
     for i in range(3 * bodies):
         reach = max(reach, abs(y[i]))
@@ -208,8 +205,6 @@ def prepare(model, drive, power, tolerance, fastest, clock, states, memory):
     clock[WATCHED] = 0.0
     clock[LAST_ERROR] = 0.0
     if clock[NEXT] == 0.0:
-        ahead = number_row(model.several, memory, 1, size)
-        change = number_row(model.several, memory, 3, size)
         h = max(1e-3 / (error_norm(bodies, rigid, y, rate) + 1e-6), 1e-15)
         for i in range(size):
             ahead[i] = y[i] + h * rate[i]
@@ -221,13 +216,14 @@ def prepare(model, drive, power, tolerance, fastest, clock, states, memory):
 
 
 @kernel
-def advance(model, drive, tableaux, power, tolerance, limit, budget, watch, clock, counted, states,
-            memory, dense, grid):
+def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, watch, clock,
+            counted, states, memory, dense, grid):
     """
     Take steps until the grid is filled, or `limit` is reached.
 
-    power: of h in the error estimate; tolerance: of the run, in the norm of error_norm; limit:
-    [ns] since the beginning: a step ends there, and none goes on; budget: the most attempts;
+    power: of h in the error estimate; tolerance: of the run, in the norm of error_norm; fastest:
+    see begin; limit: [ns] since the beginning: a step ends there, and none goes on; budget: the
+    most attempts;
     watch: steps that stay longer than this [s], or where it is negative shorter than -watch, end
     the run with SWITCH; clock, counted: see above; states: (4, size) start and end of the last
     step, the rates there; dense: (DENSE_SIZE, size). Returns REACHED, BUDGET_SPENT,
@@ -244,6 +240,9 @@ def advance(model, drive, tableaux, power, tolerance, limit, budget, watch, cloc
     load(size, states[1], y_new)
     load(size, states[2], rate)
     load(size, states[3], rate_new)
+    if clock[STEP] == TO_BEGIN:
+        begin(model, drive, bodies, rigid, size, power, tolerance, fastest, clock, y_new, rate_new,
+              y, rate)
     status = REACHED
     stalled = 0
     tolerance = max(MARGIN * tolerance, clock[FLOOR])
@@ -290,11 +289,13 @@ def advance(model, drive, tableaux, power, tolerance, limit, budget, watch, cloc
             if not ratio < 1e30:
                 ratio = 1e30
             logarithm = math.log(max(ratio, 1e-30))
-            stalled = stalled + 1 if is_rounding(
-                logarithm - before, math.log(h / h_before), power,
-                ratio * tolerance) else 0
-            before, h_before = logarithm, h
-            accepted = ratio <= 1.0 or stalled >= 2
+            accepted = ratio <= 1.0
+            if not accepted:
+                stalled = stalled + 1 if is_rounding(
+                    logarithm - before, math.log(h / h_before), power,
+                    ratio * tolerance) else 0
+                before, h_before = logarithm, h
+                accepted = stalled >= 2
             if accepted:
                 factor = step_factor(logarithm, clock[LAST_ERROR], power)
                 if ratio > 1.0:

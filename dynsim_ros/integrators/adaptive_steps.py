@@ -5,8 +5,7 @@
 import numpy as np
 
 from .adaptive import (advance, BASE, BUDGET_SPENT, CLOCK_SIZE, COUNTS_SIZE, END, FLOOR, Grid,
-                       MARGIN, NEXT, prepare, REJECTED, STEP, STEP_TOO_SHORT,
-                       STEPS)
+                       MARGIN, NEXT, REJECTED, STEP, STEP_TOO_SHORT, STEPS, TO_BEGIN)
 from .dense_output import DENSE_SIZE
 from .entry import entry
 from .memory import new_memory
@@ -95,7 +94,7 @@ class AdaptiveSteps(Walk):
         self.origin = 0
         self._fastest = spring_rates(model)[0] / EXPLICIT_REACH
         self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))
-        self._prepare = self._advance = None
+        self._advance = None
 
     @property
     def current(self):
@@ -105,23 +104,16 @@ class AdaptiveSteps(Walk):
     def begin(self, time_ns, state):
         """Begin at an instant [ns], in a state: (size,)."""
         self.origin = time_ns
-        self.clock[[BASE, END]] = 0.0
+        self.clock[BASE] = self.clock[END] = 0.0
+        self.clock[STEP] = TO_BEGIN
         self.states[1] = state
-        self._begin()
 
     def follow(self, other, step):
         """Go on where other steps have come to, with a first step of a given length [s]."""
         self.origin = other.origin
-        self.clock[[BASE, END, NEXT]] = other.clock[BASE], other.clock[END], step
+        self.clock[BASE], self.clock[END] = other.clock[BASE], other.clock[END]
+        self.clock[STEP], self.clock[NEXT] = TO_BEGIN, step
         self.states[1] = other.states[1]
-        self._begin()
-
-    def _begin(self):
-        arguments = (self._model, self._drive, self.method.power, self.tolerance, self._fastest,
-                     self.clock, self.states, self._memory)
-        if self._prepare is None:
-            self._prepare = entry(prepare, *arguments)
-        self._prepare(*arguments)
 
     def reset(self):
         """Forget all: the next beginning is the first one."""
@@ -140,8 +132,8 @@ class AdaptiveSteps(Walk):
     def run(self, limit, grid, budget=BUDGET):
         """Take steps until the grid is filled or the limit reached; return what ended them."""
         arguments = (self._model, self._drive, self.method.tableaux, self.method.power,
-                     self.tolerance, limit, budget, self.watch, self.clock, self.counts,
-                     self.states, self._memory, self._dense, grid)
+                     self.tolerance, self._fastest, limit, budget, self.watch, self.clock,
+                     self.counts, self.states, self._memory, self._dense, grid)
         if self._advance is None:
             self._advance = entry(advance, *arguments)
         return self._advance(*arguments)

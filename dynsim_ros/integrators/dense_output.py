@@ -22,6 +22,7 @@ from .linearly_implicit import linearly_implicit_substep
 from .memory import lane_row, STAGES
 from .radau import dense_radau
 from .radau_tableau import nodes
+from ..physics.arms import arm_of_state, begin_arm, swap_arms, with_arm
 from ..physics.jit import formula, part
 from ..physics.lanes import choose, COUNT, lane, lanes_at, spread, total
 from ..physics.motion import rates
@@ -130,20 +131,23 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
     for i in range(size):
         base[i] = choose(from_start, y[i], y_new[i])
         reached[i] = base[i]
+    whole, arm = with_arm(model), arm_of_state(model, base)
     for stage in range(_EXPLICIT_STAGES):
         h = way / (2.0 * (stage + 1))
         for i in range(size):
             a[i] = spread(0.0)
             b[i] = h * choose(from_start, rate[i], rate_new[i])
+        begin_arm(arm, h, base, a, b)
         now = start + h
         for _ in range(2 * stage + 1):
-            midpoint(model, drive, size, now, h, base, a, b, state, f)
+            midpoint(whole, drive, size, now, h, base, arm, a, b, state, f)
             now = now + h
             for i in range(size):
                 # The one that is ahead comes to lie in b.
                 f[i] = a[i]
                 a[i] = b[i]
                 b[i] = f[i]
+            swap_arms(arm, a, b)
         weight = table[_SEQUENCES + stage]
         for i in range(size):
             reached[i] = reached[i] + weight * b[i]

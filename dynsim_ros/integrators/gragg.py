@@ -13,6 +13,8 @@ the step of order 16 takes as long as the 15 evaluations of its longest sequence
 
 from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .memory import lane_row
+from ..physics.arms import (arm_of_state, begin_arm, put_arm, restart_arm, step_arm,
+                            with_arm)
 from ..physics.jit import part
 from ..physics.lanes import choose, COUNT, lanes_at, spread
 from ..physics.motion import rates
@@ -26,18 +28,20 @@ def gragg_schedule(stages=STAGES):
 
 
 @part
-def midpoint(model, drive, size, t, h, y, behind, here, state, f):
+def midpoint(model, drive, size, t, h, y, arm, behind, here, state, f):
     """
     Put behind + 2 h f(here) where `behind` was.
 
-    behind, here: Lanes, less the state y at the start: sums of small numbers are rounded less; t:
-    Lanes, the time of `here`; state, f: Cells to use.
+    model: as from with_arm; behind, here: Lanes, less the state y at the start and its arm: sums
+    of small numbers are rounded less; t: Lanes, the time of `here`; state, f: Cells to use.
     """
     for i in range(size):
         state[i] = y[i] + here[i]
+    put_arm(arm, here, state)
     rates(model, drive, t, state, f)
     for i in range(size):
         behind[i] = behind[i] + (h + h) * f[i]
+    step_arm(arm, h, state, behind)
 
 
 @part
@@ -57,12 +61,14 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
     table = plan.table
     h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
     now = t + h
+    whole, arm = with_arm(model), arm_of_state(model, y)
+    begin_arm(arm, h, y, a, b)
     for i in range(size):
         a[i] = spread(0.0)
         b[i] = h * rate[i]
         first[i] = spread(0.0)
     for row in range(0, plan.rows, 2):
-        midpoint(model, drive, size, now, h, y, a, b, state, f)
+        midpoint(whole, drive, size, now, h, y, arm, a, b, state, f)
         now = now + h
         if row >= plan.first_end:
             ended = lanes_at(table, ENDS + COUNT * row)
@@ -70,11 +76,12 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
                 first[i] = choose(ended, a[i], first[i])
                 b[i] = choose(ended, 0.0, b[i])
                 a[i] = choose(ended, h_second * rate[i], a[i])
+            restart_arm(arm, ended, h_second, y, a, b)
             now = choose(ended, t + h_second, now)
             h = choose(ended, h_second, h)
         if row == plan.rows - 1:
             break
-        midpoint(model, drive, size, now, h, y, b, a, state, f)
+        midpoint(whole, drive, size, now, h, y, arm, b, a, state, f)
         now = now + h
     second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1 - plan.rows % 2))
     for i in range(size):

@@ -99,7 +99,7 @@ def _view(cells_type):
 _reserve_numbers, _reserve_lanes = (_reservation(CellsType(dtype)) for dtype in (FLOAT, LANES))
 _view_numbers, _view_lanes = (_view(CellsType(dtype)) for dtype in (FLOAT, LANES))
 
-# The most that a method keeps at one place for a single body (17) or for a single spring.
+# The most that a method keeps at one place for a single body, with its arm, or a single spring.
 SINGLE = 20
 
 
@@ -109,7 +109,7 @@ def number_cells(several, memory, place, size):
 
     several: the number of bodies where there are more than one, else None.
     """
-    return [0.0] * size
+    return [0.0] * max(size, SINGLE)
 
 
 # Inlined: what they reserve belongs to the function that calls them.
@@ -123,7 +123,7 @@ def _number_cells(several, memory, place, size):
 
 def lane_cells(several, memory, place, size):
     """Return Cells for `size` Lanes; arguments as above, each takes up four numbers of memory."""
-    return [np.zeros(COUNT) for _ in range(size)]
+    return [np.zeros(COUNT) for _ in range(max(size, SINGLE))]
 
 
 @overload(lane_cells, inline='always')

@@ -17,7 +17,7 @@ from .equations_of_motion import moment_of_force
 from .jit import formula
 from .kinematics import attachment_arm, attachment_position, attachment_velocity
 from .spring_damper import damper_force, length_and_direction, length_rate, spring_force
-from .state import omega_at, quaternion, quaternion_at, velocity_at, work_at
+from .state import ARM, omega_at, quaternion, quaternion_at, velocity_at, work_at
 from .vector import accumulate, add, at, scale, subtract
 
 
@@ -39,11 +39,19 @@ def particle_motion(bodies, i, y):
 
 
 @formula
-def point_motion(bodies, rigid, i, offset, y):
+def arm_of(bodies, i, offset, s, y):
+    """Return the arm of the attachment point of spring s on body i, in world: (3,) [m]."""
+    if offset is not None:
+        return attachment_arm(quaternion(y, quaternion_at(bodies) + 4 * i), at(offset[s], 0))
+    return at(y, ARM)
+
+
+@formula
+def point_motion(bodies, rigid, i, offset, s, y):
     """Return position and velocity in world of an attachment point of body i, and its arm."""
     position, velocity = particle_motion(bodies, i, y)
     omega = at(y, omega_at(bodies, rigid) + 3 * i)
-    arm = attachment_arm(quaternion(y, quaternion_at(bodies) + 4 * i), offset)
+    arm = arm_of(bodies, i, offset, s, y)
     return attachment_position(position, arm), attachment_velocity(velocity, omega, arm), arm
 
 
@@ -65,7 +73,7 @@ def end_motion(several, bodies, rigid, anchor, particle, body, offset, s, anchor
         position, velocity = particle_motion(bodies, body_of(several, particle, s), y)
     if body is not None:
         position, velocity, arm = point_motion(bodies, rigid, body_of(several, body, s),
-                                               at(offset[s], 0), y)
+                                               offset, s, y)
     return position, velocity, arm
 
 

@@ -28,7 +28,7 @@ class SpringEnds(NamedTuple):
     Where one end of each spring of a group is: at anchors, at particles or on rigid bodies.
 
     Exactly one of anchor, particle and body: (n,) indices, the others None; offset: (n, 3)
-    body-fixed [m] where it is body.
+    body-fixed [m] where it is body, None where the state has the arm (see arms).
     """
 
     anchor: np.ndarray | None

@@ -17,6 +17,8 @@ from .model import body_order
 from .rotation import quaternion_norm
 
 WORKS = ('damper', 'air', 'anchor', 'push')
+# Where the arm lies that is kept beside the state of a single body: see arms.
+ARM = 6 + 7 + len(WORKS)
 
 
 @formula

@@ -17,7 +17,7 @@ from tree import output_of, ROOT
 
 SCRIPT = Path(__file__).with_name('use_kernels.py')
 KERNELS = {name: method.advance for name, method in METHODS.items() if method.advance is not None}
-KERNELS |= {'adaptive': adaptive.advance, 'prepare': adaptive.prepare, 'energies': energies,
+KERNELS |= {'adaptive': adaptive.advance, 'energies': energies,
             'wrenches': wrenches, 'rates': rates}
 
 

@@ -10,12 +10,14 @@ import numpy as np
 from .motion import Centred, Flights, Holding, Line
 from ..closed_form import centre_of_springs, is_along, least_length, spring_line
 from ...physics.rotation import rotate
-from ...physics.vector import add, dot, subtract
+from ...physics.vector import add, cross, dot, subtract
 
 _ZERO = (0.0, 0.0, 0.0)
 # How much of its natural length, or of its length at the beginning, a spring must keep for ever.
 # Far more than rounding, and long before anything but L tells how close the ends are.
 _LEAST_LENGTH = 1e-3
+# Far more than rounding: what is farther from a line need not be looked at exactly.
+_NEARLY = 1e-9
 
 
 def forces(model, drive):
@@ -38,6 +40,11 @@ def flights(model, drive):
     """Return the Flights of bodies on which no spring acts."""
     acceleration = forces(model, drive) / model.mass[:, np.newaxis]
     return Flights(model.mass, acceleration, *drag_and_wind(model))
+
+
+def _is_nearly_along(direction, vector, slack):
+    """Return whether a vector may have no part across a direction known up to `slack` [m]."""
+    return max(map(abs, cross(direction, vector))) <= slack * max(map(abs, vector))
 
 
 class SingleBody:
@@ -91,6 +98,10 @@ class SingleBody:
             if self.model.general_body is not None and any(map(any, self.rotating)):
                 return None
             along += self.rotating
+        slack = _NEARLY * max(map(abs, (*self.position, *arm, *anchor.position)))
+        if not all(_is_nearly_along(subtract(tip, anchor.position), vector, slack)
+                   for vector in along):
+            return None
         # Without rounding, also that of the difference: across the line all may be unstable.
         direction = tuple(Fraction(x) + Fraction(a) - Fraction(p)
                           for x, a, p in zip(self.position, arm, anchor.position))
