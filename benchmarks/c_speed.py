@@ -8,7 +8,6 @@ compiled by gcc -O3 -march=native. Both run 100 000 steps of 0.1 ms, in interlea
 core, so that calling them costs nothing beside the steps; the least time counts.
 """
 
-import argparse
 import ctypes
 from pathlib import Path
 import shutil
@@ -22,6 +21,7 @@ from dynsim_ros.simulation import Propagator
 from measure import use_one_core
 from metric import error
 import numpy as np
+from options import parse_options
 from states import initial, moments_of_inertia
 import tables
 
@@ -101,11 +101,7 @@ def markdown(results, compiler):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
-    parser.add_argument('--rounds', type=int, default=30, help='timed rounds (default 30)')
-    parser.add_argument('--output', type=Path, default=Path(__file__).parent,
-                        help='folder for c_speed.md (default: that of this file)')
-    options = parser.parse_args()
+    options = parse_options(__doc__, 'c_speed.md', 30)
     if shutil.which('gcc') is None:
         return 'error: gcc was not found, which compiles steps.c; install it (apt install gcc)'
     compiler = subprocess.run(['gcc', '--version'], capture_output=True, text=True,

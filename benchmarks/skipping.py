@@ -9,10 +9,8 @@ Times are the least of interleaved rounds on one core; compiling comes before (m
 afterwards it is cached).
 """
 
-import argparse
 import csv
 from dataclasses import replace
-from pathlib import Path
 import sys
 import time
 
@@ -25,6 +23,7 @@ from dynsim_ros.scene import Air, Anchor, Box, Particle
 from dynsim_ros.simulation.settings import SECOND, Settings
 from measure import use_one_core
 import numpy as np
+from options import parse_options
 import tables
 
 STEP, TOLERANCE = 1e-3, 1e-9
@@ -174,11 +173,7 @@ def plot(rows, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
-    parser.add_argument('--rounds', type=int, default=50, help='timed rounds (default 50)')
-    parser.add_argument('--output', type=Path, default=Path(__file__).parent,
-                        help='folder for the results (default: that of this file)')
-    options = parser.parse_args()
+    options = parse_options(__doc__, 'the results', 50)
     use_one_core()
     rows = measure(options.rounds)
     text = markdown(rows)

@@ -8,7 +8,7 @@ from states import Places
 
 from . import Run, Setting, steps, tolerances
 
-ADAPTIVE = ('auto', 'extrapolation', 'dop853', 'stiff')
+ADAPTIVE = ('auto', 'extrapolation', 'dop853', 'stiff', 'radau')
 FIXED_STEP = ('rk4', 'leapfrog', 'semi_implicit_euler', 'explicit_euler',
               'explicit_euler_axis_angle')
 
