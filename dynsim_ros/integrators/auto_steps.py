@@ -28,8 +28,8 @@ class AutoSteps(Walk):
     """
     Advances a state with an explicit method, and with a stiff one where that is faster.
 
-    explicit, stiff: Adaptive; cost: of a step of the stiff one, in steps of the other; else as for
-    AdaptiveSteps.
+    explicit: Adaptive; stiff: returns an Adaptive, called when it is first needed; cost: of a step
+    of the stiff one, in steps of the other; else as for AdaptiveSteps.
     """
 
     def __init__(self, explicit, stiff, cost, tolerance, model, drive, size, springs):
@@ -37,7 +37,7 @@ class AutoSteps(Walk):
         held_back = held_back_step(model)
         self.explicit = AdaptiveSteps(explicit, tolerance, model, drive, size, springs,
                                       held_back if held_back < math.inf else 0.0)
-        self._new_stiff = lambda: AdaptiveSteps(stiff, tolerance, model, drive, size, springs)
+        self._new_stiff = lambda: AdaptiveSteps(stiff(), tolerance, model, drive, size, springs)
         self.stiff = None
         self.current = self.explicit
         self._wait, self._next_trial, self._entered = _SHORTEST_WAIT, 0, 0

@@ -28,11 +28,11 @@ def explicit_method(model):
 
 
 def stiff_method(model, springs, tolerance):
-    """Return the Adaptive for a stiff model, and the cost of its step in explicit steps."""
+    """Return what makes the Adaptive for a stiff model, and its step's cost in explicit steps."""
     is_dragged = drag_rate(model) > 0.1 * max(spring_rates(model))
     if tolerance >= _COARSE or springs > _MANY or is_dragged:
-        return methods.stiff(), 1.2
-    return methods.radau(), 10.0
+        return methods.stiff, 1.2
+    return methods.radau, 10.0
 
 
 def new_steps(settings, model, drive, size):
