@@ -18,7 +18,7 @@ PARAMETERS = -p record.enable:=true \
 	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
 
 .DELETE_ON_ERROR:
-.PHONY: help run test bench bench-quick bench-stability bench-skipping lint clean stale
+.PHONY: help run test bench bench-quick bench-stability bench-skipping bench-instructions lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -31,6 +31,7 @@ help:
 	@echo 'make bench-quick   the main scenes against the fastest engines, in less than three minutes'
 	@echo 'make bench-stability   every method and the engines over twelve decades of parameters; to benchmarks/'
 	@echo 'make bench-skipping    what a step costs with each term of a scene removed; to benchmarks/'
+	@echo 'make bench-instructions   run time against error as counts of instructions (needs valgrind); to benchmarks/'
 	@echo 'make lint    check the style'
 	@echo 'make clean   remove .venv, caches and build output; recorded runs stay'
 	@echo
@@ -55,6 +56,9 @@ bench-stability: $(VENV)/ready_for_benchmarks
 
 bench-skipping: $(VENV)/ready_for_benchmarks
 	@exec tools/in_venv python benchmarks/skipping.py $(ARGS)
+
+bench-instructions: $(VENV)/ready_for_benchmarks
+	@exec tools/in_venv python benchmarks/instructions.py $(ARGS)
 
 lint: $(VENV)/ready_for_tests
 	@tools/in_venv python -m flake8

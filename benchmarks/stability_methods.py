@@ -16,9 +16,9 @@ from states import Places
 # Attempts at a step: auto has what a call has by default, the others what takes about as long.
 BUDGETS = {'auto': 200_000, 'radau': 20_000}
 BUDGET = 100_000
-STAGES = {'rk4': 4, 'leapfrog': 1, 'semi_implicit_euler': 1, 'explicit_euler': 1,
-          'explicit_euler_axis_angle': 1, 'RK4': 4, 'Euler': 1, 'implicitfast': 1,
-          'semi-implicit Euler': 1}
+STAGES = {'rk4': 4, 'leapfrog': 1, 'semi_implicit_euler': 1, 'linearly_implicit_euler': 1,
+          'explicit_euler': 1, 'explicit_euler_axis_angle': 1, 'RK4': 4, 'Euler': 1,
+          'implicitfast': 1, 'semi-implicit Euler': 1}
 # A method of fixed step, and a peer, is asked for this error.
 PLAIN = 1e-3
 # The difference at the start that shows how a cell magnifies errors.
@@ -41,7 +41,8 @@ METHODS = (
     Method('stiff 1e-6', 'stiff', None, 1e-6), Method('radau 1e-6', 'radau', None, 1e-6),
     Method('dop853 1e-6', 'dop853', None, 1e-6),
     *(Method(name.replace('_', ' '), name) for name in (
-        'rk4', 'leapfrog', 'semi_implicit_euler', 'explicit_euler', 'explicit_euler_axis_angle')),
+        'rk4', 'leapfrog', 'semi_implicit_euler', 'linearly_implicit_euler', 'explicit_euler',
+        'explicit_euler_axis_angle')),
     *(Method(f'MuJoCo {name}', name, 'mujoco') for name in ('Euler', 'implicitfast', 'RK4')),
     Method('PyBullet', 'semi-implicit Euler', 'pybullet'),
     Method('Drake RK3 1e-6', 'RK3', 'drake', 1e-6),

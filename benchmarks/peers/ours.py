@@ -9,8 +9,8 @@ from states import Places
 from . import Run, Setting, steps, tolerances
 
 ADAPTIVE = ('auto', 'extrapolation', 'dop853', 'stiff', 'radau')
-FIXED_STEP = ('rk4', 'leapfrog', 'semi_implicit_euler', 'explicit_euler',
-              'explicit_euler_axis_angle')
+FIXED_STEP = ('rk4', 'leapfrog', 'semi_implicit_euler', 'linearly_implicit_euler',
+              'explicit_euler', 'explicit_euler_axis_angle')
 
 
 def available():

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
-from . import (dop853_tableau, explicit_euler, explicit_euler_axis_angle, leapfrog, radau_tableau,
-               rk4, semi_implicit_euler)
+from . import (dop853_tableau, explicit_euler, explicit_euler_axis_angle, leapfrog,
+               linearly_implicit_euler, radau_tableau, rk4, semi_implicit_euler)
 from .adaptive import Tableaux
 from .dense_output import explicit_table, radau_table, stiff_table
 from .gragg import gragg_schedule
@@ -55,6 +55,8 @@ METHODS = {method.name: method for method in (
     Method('leapfrog', 2, 'reversible, bounded energy error', leapfrog.advance),
     Method('semi_implicit_euler', 1, 'velocities first, bounded energy error',
            semi_implicit_euler.advance),
+    Method('linearly_implicit_euler', 1, 'stable for springs and dampers of any strength',
+           linearly_implicit_euler.advance),
     Method('explicit_euler', 1, 'as on the formula sheet, quaternion updated by H',
            explicit_euler.advance),
     Method('explicit_euler_axis_angle', 1,

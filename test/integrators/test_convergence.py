@@ -74,5 +74,5 @@ def test_motion_without_forces_is_exact_in_position(method):
 
 def test_the_orders_are_those_of_the_theory():
     assert {name: METHODS[name].order for name in FIXED} == {
-        'rk4': 4, 'leapfrog': 2, 'semi_implicit_euler': 1, 'explicit_euler': 1,
-        'explicit_euler_axis_angle': 1}
+        'rk4': 4, 'leapfrog': 2, 'semi_implicit_euler': 1, 'linearly_implicit_euler': 1,
+        'explicit_euler': 1, 'explicit_euler_axis_angle': 1}

@@ -131,7 +131,8 @@ def test_rate_changes_the_distance_of_stamps(client):
 
 
 @pytest.mark.parametrize('method', ['explicit_euler', 'explicit_euler_axis_angle',
-                                    'semi_implicit_euler', 'leapfrog', 'rk4', 'auto'])
+                                    'semi_implicit_euler', 'linearly_implicit_euler', 'leapfrog',
+                                    'rk4', 'auto'])
 def test_integrator_can_change_on_the_way(client, method):
     client.steps(1, 'sphere/pose')
     assert client.set_group({'integrator': method, 'step': 1e-4}).successful
