@@ -5,6 +5,9 @@
 from __future__ import annotations
 
 import argparse
+import gc
+import inspect
+import os
 import sys
 
 from .ros_arguments import split
@@ -44,6 +47,11 @@ def main(args=None) -> int:
         return _simulate(_parser(own).parse_args(own), ros_args, signals)
     except Interrupted:
         return 0
+    except RuntimeError:
+        # What becomes of an Interrupted that a callback from C, as a compiler has them, dropped.
+        if not signals.requested:
+            raise
+        return 0
     except ImportError as error:
         print(f'error: {error}: install or source ROS 2 Jazzy', file=sys.stderr)
     except ValueError as error:
@@ -62,7 +70,8 @@ def _simulate(options, ros_args, signals) -> int:
     line = StatusLine(not options.quiet and (options.status or sys.stdout.isatty()))
     with ros_context('sim_node', ros_args):
         line.show('starting: loading the kernels (compiling them takes a while the first time)')
-        node = SimNode()
+        node = SimNode(is_ending=signals.is_requested)
+        _settle()
         signals.hold()
         line.end()
         try:
@@ -71,9 +80,25 @@ def _simulate(options, ros_args, signals) -> int:
                 _spin_until_end(node, spin_some, signals, line)
         finally:
             line.end()
-            node.end()
+            has_ended = node.end()
             node.destroy_node()
+    if not has_ended:
+        _leave()
     return 0
+
+
+def _settle():
+    """Do now what would hold up ticks later: the first line in a log does, and all numba keeps."""
+    inspect.getframeinfo(inspect.currentframe())
+    gc.collect()
+    gc.freeze()
+
+
+def _leave():
+    """End the process here: a thread that compiles cannot be ended, nor left behind by Python."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
 
 
 def _spin_until_end(node, spin_some, signals, line):

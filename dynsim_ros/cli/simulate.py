@@ -53,6 +53,11 @@ def main(args=None) -> int:
               file=sys.stderr)
     except Interrupted:
         return 130
+    except RuntimeError:
+        # What becomes of an Interrupted that a callback from C, as a compiler has them, dropped.
+        if not signals.requested:
+            raise
+        return 130
     finally:
         if args is None:
             signals.ignore()

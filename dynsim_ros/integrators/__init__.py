@@ -3,7 +3,9 @@
 """The integration methods, chosen by name."""
 
 from .adaptive_steps import IntegrationError
+from .kernel_kind import kernel_kind
 from .methods import DEFAULT_METHOD, method_named, METHODS
 from .stepping import new_steps
 
-__all__ = ['DEFAULT_METHOD', 'IntegrationError', 'METHODS', 'method_named', 'new_steps']
+__all__ = ['DEFAULT_METHOD', 'IntegrationError', 'METHODS', 'kernel_kind', 'method_named',
+           'new_steps']

@@ -73,6 +73,11 @@ class AutoMotion:
         if self._current is self._closed and not self._stays_closed:
             self._all_steps().prepare()
 
+    def prepare_ahead(self, state):
+        """Compile, or load from the cache, what may be needed later on, from a state (size,)."""
+        if not self._stays_closed:
+            self._all_steps().prepare_ahead(state)
+
     def reset(self):
         """Forget all: the next beginning is the first one."""
         if self._steps is not None:

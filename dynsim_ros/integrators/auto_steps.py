@@ -63,6 +63,13 @@ class AutoSteps(Walk):
         """Compile, or load from the cache, what the steps need, or do nothing."""
         self.explicit.prepare()
 
+    def prepare_ahead(self, state):
+        """Compile, or load from the cache, what the stiff method needs; change nothing."""
+        if self.explicit.watch > 0.0:
+            stiff = self._new_stiff()
+            stiff.begin(0, state)
+            stiff.prepare()
+
     def go(self, limit, grid):
         """Take steps as AdaptiveSteps.run does, with whichever method is the better one."""
         left = self.budget

@@ -14,5 +14,7 @@ def entry(kernel, *arguments):
     if numba.config.DISABLE_JIT:
         return kernel
     signature = tuple(numba.typeof(argument) for argument in arguments)
-    kernel.compile(signature)
+    # Asked first: compile() waits until no other thread compiles anything.
+    if signature not in kernel.overloads:
+        kernel.compile(signature)
     return kernel.overloads[signature].entry_point

@@ -13,8 +13,10 @@ import os
 from pathlib import Path
 import shutil
 import tempfile
+import threading
 
 import numba
+from numba.core import event
 from numba.core.registry import CPUDispatcher
 
 # The caches of older sources that are kept, for other installations of the package.
@@ -81,6 +83,36 @@ def _our_cache():
         yield
     finally:
         numba.config.CACHE_DIR = before
+
+
+def kernels_are_kept():
+    """Return whether what is compiled is kept on disk, for other processes."""
+    return _DIRECTORY is not None and not numba.config.DISABLE_JIT
+
+
+class NotKeptError(Exception):
+    """A kernel is not on disk: it has to be compiled."""
+
+
+class _Refusal(event.Listener):
+    """Told by numba that it is about to compile, raises NotKeptError in one thread."""
+
+    def __init__(self):
+        self._thread = threading.get_ident()
+
+    def on_start(self, event):
+        if threading.get_ident() == self._thread:
+            raise NotKeptError
+
+    def on_end(self, event):
+        pass
+
+
+@contextmanager
+def only_loading():
+    """Let this thread load kernels from the disk, and raise NotKeptError before it compiles."""
+    with event.install_listener('numba:compile', _Refusal()):
+        yield
 
 
 def _compiled(function, **more):

@@ -47,6 +47,14 @@ class Pacer:
             return SHORTEST_PERIOD
         return round(min(max(tick_ns / self.factor, SHORTEST_PERIOD), LONGEST_PERIOD))
 
+    def time_left(self, time_ns, tick_ns):
+        """Return how long it is until the tick after time_ns is due [s], a period at most."""
+        left = 0.0
+        if self.factor > 0.0:
+            elapsed = self.now() - self._clock_start
+            left = (time_ns + tick_ns - self._time_start) / self.factor - elapsed
+        return min(max(left, 0.0), self.period(tick_ns)) / SECOND
+
     def ticks_due(self, time_ns, tick_ns):
         """
         Yield once for each tick that is due at simulated time time_ns, for at most BATCH.

@@ -8,6 +8,7 @@ from rclpy.node import Node
 
 from .clock import ClockPublisher
 from .commands import Commands
+from .compiling import Compiling
 from .context import one_line
 from .diagnostics import Diagnostics
 from .message_types import message_class
@@ -27,11 +28,12 @@ class SimNode(Node):
     """
     Simulates a scene in real time.
 
-    Raises SceneError if a parameter given at the start is wrong. All callbacks run in one
-    thread; they find the simulator at a tick boundary, and what they change holds from there on.
+    is_ending: function that tells whether the program was asked to end. Raises SceneError if a
+    parameter given at the start is wrong. All callbacks run in one thread; they find the simulator
+    at a tick boundary, and what they change holds from there on.
     """
 
-    def __init__(self, name='dynsim'):
+    def __init__(self, name='dynsim', is_ending=lambda: False):
         try:
             super().__init__(name, automatically_declare_parameters_from_overrides=True)
         except ValueError as error:
@@ -56,6 +58,8 @@ class SimNode(Node):
         self.pacer = Pacer(self.parameters.own['real_time_factor'])
         if self._follows_clock:
             self.pacer.now, self.pacer.longest_lag = self._ros_now, LONGEST_STRIDE
+        self.compiling = Compiling(self.run, self.get_logger(),
+                                   lambda: is_ending() or self.run.finished)
         self.diagnostics = Diagnostics(self, self.run, self.pacer)
         self._epoch_publisher = self.create_publisher(
             message_class(EPOCH.type_name), f'~/{EPOCH.topic}', profile(EPOCH.qos))
@@ -80,10 +84,11 @@ class SimNode(Node):
                                                     clock=self._steady)
 
     def end(self):
-        """Stop ticking and finish the bag."""
+        """Stop ticking and finish the bag; return whether all threads have ended."""
         self.run.stop_recording()
         if self._timer is not None:
             self._timer.cancel()
+        return self.compiling.give_up()
 
     def set_parameters_atomically(self, parameter_list):
         """Set a group of parameters, all of them or none, with our reasons where refused."""
@@ -93,6 +98,7 @@ class SimNode(Node):
         try:
             parameters = self.parameters.checked(parameters, self.run.simulator)
             self._check_clock({parameter.name: parameter.value for parameter in parameters})
+            self.compiling.prepare(self.parameters.run_values(parameters), self._go_on)
         except SceneError as error:
             return refused(str(error))
         return super().set_parameters_atomically(parameters)
@@ -119,10 +125,7 @@ class SimNode(Node):
         names = {parameter.name for parameter in parameters}
         self.run.record_settings({name: self.parameters.own[name]
                                   for name in names if name in self.parameters.own})
-        if 'integrator' in names:
-            # It may have to be compiled: that is no lag to be made up for.
-            self.run.simulator.prepare()
-        if names & {'integrator', 'rate', 'real_time_factor'}:
+        if names & {'rate', 'real_time_factor'}:
             self._schedule()
 
     def _schedule(self):
@@ -148,6 +151,14 @@ class SimNode(Node):
             run.tick()
             if run.paused or run.finished:
                 return
+
+    def _go_on(self):
+        """Run the ticks that are due; return how long there is nothing to do [s]."""
+        run, tick_ns = self.run, self.run.simulator.settings.tick_ns
+        self._advance()
+        if run.paused or run.finished or run.waiting:
+            return self.pacer.period(tick_ns) / 1e9
+        return self.pacer.time_left(run.simulator.time_ns, tick_ns)
 
     def _clock_is_good(self):
         """Tell whether /clock has begun; if it was set back, begin a new epoch."""
@@ -183,6 +194,7 @@ class SimNode(Node):
             self.set_parameters_atomically(self.parameters.restored(self.run.simulator))
         finally:
             self._restoring = False
+        self.compiling.was_changed()
         self.diagnostics.begin()
         self._schedule()
         self._begin_epoch()
@@ -193,3 +205,4 @@ class SimNode(Node):
 
     def _publish_diagnostics(self):
         self.diagnostics.publish()
+        self.compiling.prepare_ahead()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The simulator: the only place where time advances."""
 
+import copy
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from .layout import Layout
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
 from .trajectory import Trajectory
-from ..integrators import IntegrationError, new_steps
+from ..integrators import DEFAULT_METHOD, IntegrationError, kernel_kind, new_steps
 from ..physics.drive import Drive
 from ..physics.energies import energies
 from ..physics.model import build_model
@@ -70,14 +71,16 @@ class Simulator:
     def _begin_steps(self):
         """Let the integration begin at the present instant, under what is in force."""
         if self._steps is None:
-            # Anchors can be commanded to move, and bodies be pushed, at any time: without a pause
-            # for compiling.
-            drive = Drive(self._anchors.motion, True if self.scene.anchors else None,
-                          self._pushes, True)
-            self._steps = new_steps(self.settings, self._model, drive, self.layout.size)
+            self._steps = new_steps(self.settings, self._model, self._drive(self._anchors),
+                                    self.layout.size)
         self._anchors.rebase(self.time_ns)
         self._steps.begin(self.time_ns, self._state)
         self._is_begun = True
+
+    def _drive(self, anchors):
+        # Anchors can be commanded to move, and bodies be pushed, at any time: without a pause for
+        # compiling.
+        return Drive(anchors.motion, True if self.scene.anchors else None, self._pushes, True)
 
     @property
     def normalisation_removed(self):
@@ -105,8 +108,34 @@ class Simulator:
         if not self._is_begun:
             self._begin_steps()
         self._steps.prepare()
-        snapshot = self.snapshot()
-        return snapshot.net_forces, snapshot.energy
+        # Not what Snapshot keeps: up to Python 3.11 its ticks would wait until it is there.
+        self._energy()
+        self.snapshot().computed_forces()
+
+    def prepare_ahead(self):
+        """Compile, or load likewise, what the method may go over to later on; after prepare."""
+        if self.settings.integrator == DEFAULT_METHOD:
+            self._steps.prepare_ahead(self._state)
+
+    def kernel_kind(self, values):
+        """
+        Return which kernels are needed after a change, {name: value} as in SetValues: hashable.
+
+        Where it is the same, prepare needs the same ones. Raises SceneError; nothing is compiled.
+        """
+        scene, settings = self.changed_by(values)
+        anchors = copy.deepcopy(self._anchors)
+        anchors.rebase(self.time_ns)
+        _set_anchors(anchors, scene, values)
+        return kernel_kind(settings, build_model(scene), self._drive(anchors), self._state)
+
+    def copy(self):
+        """Return a Simulator that stands where this one does, and goes its own way from there."""
+        other = copy.copy(self)
+        other._state, other._pushes = self._state.copy(), self._pushes.copy()
+        other._push_ends, other._anchors = dict(self._push_ends), copy.deepcopy(self._anchors)
+        other._steps, other._is_begun = None, False
+        return other
 
     def advance_tick(self):
         """Advance by one tick; raise DivergenceError if the motion is no longer finite."""
@@ -232,11 +261,7 @@ class Simulator:
         scene, settings = self.changed_by(values)
         self._begin_here()
         before = self._energy()
-        for i, anchor in enumerate(scene.anchors):
-            if f'{anchor.name}.position' in values:
-                self._anchors.place(i, anchor.position)
-            if {f'{anchor.name}.position', f'{anchor.name}.velocity'} & set(values):
-                self._anchors.set_velocity(i, anchor.velocity)
+        _set_anchors(self._anchors, scene, values)
         moved = self._energy()
         self._add_anchor_work(moved - before)
         self.scene, self.settings = scene, settings
@@ -249,6 +274,15 @@ class Simulator:
         kinetic, gravitational, spring = energies(
             self._model, self._anchors.motion_at(self.time_ns), 0.0, self._state)
         return kinetic + gravitational + spring
+
+
+def _set_anchors(anchors, scene, values):
+    """Put the Anchors whose position or velocity is among changed values where a scene says."""
+    for i, anchor in enumerate(scene.anchors):
+        if f'{anchor.name}.position' in values:
+            anchors.place(i, anchor.position)
+        if {f'{anchor.name}.position', f'{anchor.name}.velocity'} & set(values):
+            anchors.set_velocity(i, anchor.velocity)
 
 
 def _is_finite(state):

@@ -90,6 +90,10 @@ class Snapshot:
     @cached_property
     def forces(self):
         """Return forces and torques by kind, (4, size): rows WRENCH_KINDS, laid out as state."""
+        return self.computed_forces()
+
+    def computed_forces(self):
+        """Return what `forces` does, computed anew."""
         out = np.zeros((len(WRENCH_KINDS), self.layout.size))
         wrenches(self.model, self.anchors, 0.0, self.state, out)
         return out
