@@ -13,6 +13,8 @@ from .stiffness import drag_rate, spring_rates
 # steps cost ten times as much; the cost of these grows with the cube of the number of springs, and
 # their iteration does not know of the drag.
 _COARSE, _MANY = 3e-4, 4
+# Below this tolerance rounding counts: the weights of fewer sequences are smaller.
+_FINE, _FINE_STAGES = 3e-12, 6
 
 
 def needs_no_velocity(model):
@@ -21,10 +23,11 @@ def needs_no_velocity(model):
             and all(group.damping is None for group in model.springs or ()))
 
 
-def explicit_method(model):
+def explicit_method(model, tolerance):
     """Return the Adaptive that extrapolation means for a model."""
-    return (methods.stormer_extrapolation() if needs_no_velocity(model)
-            else methods.extrapolation())
+    if needs_no_velocity(model):
+        return methods.stormer_extrapolation()
+    return methods.extrapolation(_FINE_STAGES) if tolerance < _FINE else methods.extrapolation()
 
 
 def stiff_method(model, springs, tolerance):
@@ -45,10 +48,12 @@ def new_steps(settings, model, drive, size):
     springs = 0 if model.spring_bodies is None else len(model.spring_bodies)
     if method.advance is not None:
         return FixedSteps(method.advance, settings.step_ns, model, drive, size, springs)
+    tolerance = settings.tolerance
     if method.name == 'auto':
         return AutoMotion(model, drive, lambda: AutoSteps(
-            explicit_method(model), *stiff_method(model, springs, settings.tolerance),
-            settings.tolerance, model, drive, size, springs))
-    adaptive = {'extrapolation': lambda: explicit_method(model), 'stiff': methods.stiff,
-                'radau': methods.radau, 'dop853': methods.dop853}[method.name]()
-    return AdaptiveSteps(adaptive, settings.tolerance, model, drive, size, springs)
+            explicit_method(model, tolerance), *stiff_method(model, springs, tolerance),
+            tolerance, model, drive, size, springs))
+    adaptive = {'extrapolation': lambda: explicit_method(model, tolerance),
+                'stiff': methods.stiff, 'radau': methods.radau,
+                'dop853': methods.dop853}[method.name]()
+    return AdaptiveSteps(adaptive, tolerance, model, drive, size, springs)
