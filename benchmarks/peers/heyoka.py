@@ -9,18 +9,13 @@ that choose the same one only the first is measured.
 
 from functools import partial
 import math
-import time
 
 from algebra import Numbers
 from equations import rates
 import numpy as np
 from states import in_world, Places, start
 
-from . import installed, Run, Setting, tolerances
-
-# Where its code and data happen to lie in memory makes one integrator up to twice as fast as the
-# next one like it: of so many, the fastest is taken.
-INSTANCES = 4
+from . import fastest, installed, INSTANCES, Run, Setting, tolerances
 
 
 def available():
@@ -91,17 +86,3 @@ def integrator(equations, y0, tolerance):
     # fast_math gains up to a quarter of the time and costs no accuracy that could be seen; the
     # other switches (compact_mode, slp_vectorize, force_avx512) were slower or made no difference.
     return heyoka.taylor_adaptive(equations, np.array(y0), tol=tolerance, fast_math=True)
-
-
-def fastest(runs):
-    """Return the run that takes the least time."""
-    return min(runs, key=least_time)
-
-
-def least_time(run):
-    times = []
-    while len(times) < 5 and sum(times) < 0.05:
-        start = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - start)
-    return min(times)
