@@ -16,7 +16,7 @@ import time
 
 from cases import CASES
 from dynsim_ros.integrators import new_steps
-from dynsim_ros.physics.drive import Drive
+from dynsim_ros.physics.drive import undisturbed_drive
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.state import initial_state
 from dynsim_ros.scene import Air, Anchor, Box, Particle
@@ -95,11 +95,8 @@ class Run:
         model = build_model(scene)
         self.method, self.seconds = method, np.inf
         self._start = initial_state(scene, model)
-        anchors = np.array([(*anchor.position, *anchor.velocity) for anchor in scene.anchors],
-                           dtype=float).reshape(-1, 6)
-        moving = True if anchors[:, 3:].any() else None
         settings = Settings(integrator=method, step=STEP, tolerance=TOLERANCE)
-        self._steps = new_steps(settings, model, Drive(anchors, moving, None, works or None),
+        self._steps = new_steps(settings, model, undisturbed_drive(scene, works or None),
                                 len(self._start))
         self.run()
         self.seconds = np.inf

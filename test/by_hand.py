@@ -15,7 +15,7 @@ from dynsim_ros.integrators.memory import new_memory
 from dynsim_ros.integrators.radau import dense_radau, radau
 from dynsim_ros.integrators.stiff import stiff, stiff_schedule
 from dynsim_ros.integrators.stormer import stormer, stormer_schedule
-from dynsim_ros.physics.drive import Drive
+from dynsim_ros.physics.drive import undisturbed_drive
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.motion import rates
 from dynsim_ros.physics.state import counts, initial_state, moving_size, normalise
@@ -44,10 +44,7 @@ class ByHand:
     def __init__(self, scene, method, stages=None, **drive):
         self.model, self.method = build_model(scene), method
         self.start = initial_state(scene, self.model)
-        anchors = np.array([(*anchor.position, *anchor.velocity) for anchor in scene.anchors],
-                           dtype=float).reshape(-1, 6)
-        self.drive = Drive(anchors, True if anchors[:, 3:].any() else None, None, None)._replace(
-            **drive)
+        self.drive = undisturbed_drive(scene)._replace(**drive)
         self.bodies, self.rigid = counts(self.model)
         self.size = moving_size(self.drive.works, self.bodies, self.rigid)
         self.memory = new_memory(len(self.start), len(scene.springs))

@@ -20,3 +20,15 @@ class Drive(NamedTuple):
     moving: bool | None
     pushes: np.ndarray | None
     works: bool | None
+
+
+def initial_anchors(scene):
+    """Return position [m] and velocity [m/s] in world of a scene's anchors at time 0: (n, 6)."""
+    return np.array([(*anchor.position, *anchor.velocity) for anchor in scene.anchors],
+                    dtype=float).reshape(-1, 6)
+
+
+def undisturbed_drive(scene, works=None):
+    """Return the Drive of a scene that nobody touches."""
+    anchors = initial_anchors(scene)
+    return Drive(anchors, True if anchors[:, 3:].any() else None, None, works)

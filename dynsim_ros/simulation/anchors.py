@@ -5,6 +5,7 @@
 import numpy as np
 
 from .settings import SECOND
+from ..physics.drive import initial_anchors
 
 # A command without a recent predecessor takes as long as this to carry out ('linear') [ns].
 LONGEST_MOVE = SECOND // 10
@@ -18,8 +19,7 @@ class Anchors:
     """
 
     def __init__(self, scene):
-        self.motion = np.array([(*anchor.position, *anchor.velocity)
-                                for anchor in scene.anchors], dtype=float).reshape(-1, 6)
+        self.motion = initial_anchors(scene)
         self.since = 0
         self._targets = {}
         self._commanded = {}

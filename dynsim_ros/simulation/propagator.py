@@ -8,7 +8,7 @@ import numpy as np
 
 from .settings import SECOND, Settings
 from ..integrators import new_steps
-from ..physics.drive import Drive
+from ..physics.drive import undisturbed_drive
 from ..physics.model import build_model
 from ..physics.state import initial_state
 
@@ -26,10 +26,8 @@ class Propagator:
         self.settings = replace(Settings(), **changes)
         self._model = build_model(scene)
         self._start = initial_state(scene, self._model)
-        anchors = np.array([(*anchor.position, *anchor.velocity) for anchor in scene.anchors],
-                           dtype=float).reshape(-1, 6)
-        self._drive = Drive(anchors, True if anchors[:, 3:].any() else None, None, None)
-        self._steps = new_steps(self.settings, self._model, self._drive, len(self._start))
+        self._steps = new_steps(self.settings, self._model, undisturbed_drive(scene),
+                                len(self._start))
         self._steps.budget = budget
 
     def _begin(self):

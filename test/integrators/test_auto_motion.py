@@ -3,7 +3,7 @@
 """Closed forms where there are some, steps elsewhere: chosen anew whenever a motion begins."""
 
 from dynsim_ros.integrators.auto_motion import AutoMotion
-from dynsim_ros.physics.drive import Drive
+from dynsim_ros.physics.drive import Drive, initial_anchors
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.state import initial_state
 import numpy as np
@@ -32,9 +32,7 @@ class Chosen:
         scene = all_scenes()[name]
         self.model = build_model(scene)
         self.state = initial_state(scene, self.model)
-        anchors = np.array([(*anchor.position, *anchor.velocity) for anchor in scene.anchors],
-                           dtype=float).reshape(-1, 6)
-        self.drive = Drive(anchors, True, np.zeros_like(self.state), None)
+        self.drive = Drive(initial_anchors(scene), True, np.zeros_like(self.state), None)
         self.made = []
         self.motion = AutoMotion(self.model, self.drive, self.new_steps)
 

@@ -9,7 +9,7 @@ same source then takes no time to compile.
 
 import json
 
-from dynsim_ros.physics.drive import Drive
+from dynsim_ros.physics.drive import Drive, initial_anchors
 from dynsim_ros.physics.energies import energies
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.motion import rates, wrenches
@@ -88,7 +88,7 @@ def quaternion_rate(q, omega):
 def compare(scene, y, motion, random):
     """Return {kind: difference} for one state."""
     layout, model, t = Layout(scene), build_model(scene), 0.37
-    anchors = np.array([(*anchor.position, *anchor.velocity) for anchor in scene.anchors])
+    anchors = initial_anchors(scene)
     pushes, given = np.zeros(layout.size), {}
     for body in ('dot', 'crate'):
         given[body] = random.normal(size=(2, 3)) * [[1], [body == 'crate']]

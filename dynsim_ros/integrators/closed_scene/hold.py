@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""The springs of a model one by one, as far as they act, and where their ends are."""
+"""The springs of a model one by one, and where their ends are."""
 
 from typing import NamedTuple
 
@@ -39,22 +39,15 @@ class Hold(NamedTuple):
         return self.q if self.q.body is not None else self.p
 
 
-def springs_act(model):
-    """Return whether any spring pulls or damps."""
-    return any(group.stiffness.any() or group.damping is not None and group.damping.any()
-               for group in model.springs or ())
-
-
 def holds_of(model, anchors):
-    """Return the Holds of a model, without those that neither pull nor damp."""
+    """Return the Holds of a model."""
     holds = []
     for group in model.springs or ():
         for s, (stiffness, natural_length) in enumerate(zip(group.stiffness.tolist(),
                                                             group.natural_length.tolist())):
             damping = 0.0 if group.damping is None else float(group.damping[s])
-            if stiffness > 0.0 or damping > 0.0:
-                holds.append(Hold(_end(group.p, s, anchors), _end(group.q, s, anchors), stiffness,
-                                  natural_length, damping))
+            holds.append(Hold(_end(group.p, s, anchors), _end(group.q, s, anchors), stiffness,
+                              natural_length, damping))
     return holds
 
 

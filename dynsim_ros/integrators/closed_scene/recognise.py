@@ -5,7 +5,7 @@
 import math
 
 from .equilibrium import is_equilibrium, moves
-from .hold import holds_of, springs_act
+from .hold import holds_of
 from .motion import Balance, ClosedScene
 from .rotations import all_axes, rotations
 from .translations import flights, SingleBody
@@ -25,19 +25,18 @@ class Recogniser:
         self._model, self._drive = model, drive
         self._axes = all_axes(model)
         self._energies = None
-        self._springs_act = springs_act(model)
 
     def closed_scene(self, state):
         """Return the ClosedScene of the motion from a state (size,) on, or None."""
         model, drive = self._model, self._drive
         is_still = not moves(model, state)
-        if self._springs_act and model.several is not None and not is_still:
+        if model.springs is not None and model.several is not None and not is_still:
             return None
         start = state.copy()
         for i in range(model.rigid):
             q = start[6 * len(model.mass) + 4 * i:][:4]
             q /= math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-        holds = holds_of(model, drive.anchors) if self._springs_act else []
+        holds = holds_of(model, drive.anchors)
         if is_still and is_equilibrium(model, drive, start, holds):
             return self._scene(start)
         return self._moving(start, holds)

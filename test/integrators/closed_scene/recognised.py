@@ -3,7 +3,7 @@
 """Which closed form a scene's motion is recognised as; nothing is compiled for that."""
 
 from dynsim_ros.integrators.closed_scene import Recogniser
-from dynsim_ros.physics.drive import Drive
+from dynsim_ros.physics.drive import Drive, initial_anchors
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.state import initial_state
 from dynsim_ros.scene import parse_scene
@@ -28,9 +28,8 @@ def recognised(text, force=None, torque=None):
         pushes[3 * bodies:3 * bodies + 3] = force or 0.0
         if torque:
             pushes[6 * bodies + 4 * model.rigid:][:3] = torque
-    anchors = np.array([(*anchor.position, *anchor.velocity) for anchor in scene.anchors],
-                       dtype=float).reshape(-1, 6)
-    closed = Recogniser(model, Drive(anchors, True, pushes, None)).closed_scene(start)
+    drive = Drive(initial_anchors(scene), True, pushes, None)
+    closed = Recogniser(model, drive).closed_scene(start)
     if closed is None:
         return None
     always = {'start', 'bodies', 'rigid', 'balance'}
