@@ -7,6 +7,12 @@ PYTHON ?=
 export PYTHON
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
+# Quick discovery by loopback alone, unless there are settings of the user's own or other machines to reach.
+OWN_DISCOVERY := $(FASTRTPS_DEFAULT_PROFILES_FILE)$(FASTDDS_DEFAULT_PROFILES_FILE)$(ROS_STATIC_PEERS)$(ROS_DISCOVERY_SERVER)
+ifeq ($(ROS_AUTOMATIC_DISCOVERY_RANGE)$(strip $(OWN_DISCOVERY)),LOCALHOST)
+export FASTRTPS_DEFAULT_PROFILES_FILE := $(CURDIR)/config/fastdds_one_machine.xml
+endif
+
 # The environment is made anew where it stands for another place or another ROS, or has lost its python.
 export MADE_FOR := $(if $(filter jazzy,$(ROS_DISTRO)),jazzy,wheels) $(CURDIR)
 ifneq ($(MADE_FOR)/$(wildcard $(VENV)/bin/python),$(file <$(VENV)/made_for)/$(VENV)/bin/python)

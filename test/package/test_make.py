@@ -96,6 +96,22 @@ def test_help_is_the_default_and_sets_nothing_up(machine):
         assert f'make {target} ' in done.stdout
 
 
+PROFILE = 'a tree/config/fastdds_one_machine.xml'
+
+
+@pytest.mark.parametrize('variables, file', [
+    ({}, PROFILE), ({'FASTRTPS_DEFAULT_PROFILES_FILE': ''}, PROFILE),
+    ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}, PROFILE),
+    ({'FASTRTPS_DEFAULT_PROFILES_FILE': '/own.xml'}, '/own.xml'),
+    ({'FASTDDS_DEFAULT_PROFILES_FILE': '/own.xml'}, ''),
+    ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'}, ''), ({'ROS_STATIC_PEERS': '192.0.2.7'}, '')])
+def test_profile_for_one_machine_unless_something_else_is_wanted(machine, variables, file):
+    show = '--eval=show: ; @echo "=$$FASTRTPS_DEFAULT_PROFILES_FILE"'
+    shown = machine(show, 'show', **variables).stdout.strip()
+    assert shown.startswith('=') and shown.endswith(file), shown
+    assert (shown == '=') == (file == '')
+
+
 def test_in_venv_without_one(tmp_path):
     (tmp_path / 'tools').mkdir()
     shutil.copy(ROOT / 'tools' / 'in_venv', tmp_path / 'tools')

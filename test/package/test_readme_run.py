@@ -74,7 +74,8 @@ def test_error_that_it_shows(desk):
 def client(tmp_path_factory):
     """Give a client of a node that publishes all that it can."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(ROOT / 'test' / 'quick_discovery.xml'))
+        patch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE',
+                     str(ROOT / 'config' / 'fastdds_one_machine.xml'))
         node = LiveNode(tmp_path_factory.mktemp('node'), '-p', 'publish_clock:=true',
                         '-p', 'record.enable:=true')
         client = Client(node.name)
