@@ -1,0 +1,70 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Microseconds to build and publish the six messages of a tick, nobody listening, in one process.
+
+The naive node's publish() beside the channels and publishers of dynsim_ros; without stepping.
+"""
+
+import json
+import subprocess
+import sys
+import time
+
+TICKS = 1000
+
+
+def measure(rounds):
+    """Return {'naive', 'ours': microseconds a tick of each round}, measured in a process of its own."""
+    done = subprocess.run([sys.executable, __file__, str(rounds)], check=True, text=True,
+                          stdout=subprocess.PIPE)
+    return json.loads(done.stdout)
+
+
+def ours(node, topics):
+    """Return a function that builds and publishes a tick of the default scene."""
+    from dynsim_ros.messages.scene_channels import scene_channels
+    from dynsim_ros.ros.message_types import message_class
+    from dynsim_ros.ros.qos import profile
+    from dynsim_ros.scene import load_scene
+    from dynsim_ros.simulation import Simulator
+
+    simulator = Simulator(load_scene('sphere_on_spring'))
+    simulator.advance_tick()
+    pairs = [(channel.encode, node.create_publisher(
+                message_class(channel.type_name), channel.topic, profile(channel.qos)).publish)
+             for channel in scene_channels(simulator.scene, simulator.layout)
+             if channel.topic in topics]
+    assert len(pairs) == len(topics)
+    snapshot = simulator.snapshot()
+
+    def tick():
+        for encode, publish in pairs:
+            publish(encode(snapshot, 123_456_789))
+
+    return tick
+
+
+def main():
+    import rclpy
+    from naive_node import NaiveNode, TOPICS
+
+    rclpy.init()
+    nodes = NaiveNode(1000.0), rclpy.create_node('ours')
+    ticks = {'naive': nodes[0].publish, 'ours': ours(nodes[1], TOPICS)}
+    found = {name: [] for name in ticks}
+    for _ in range(int(sys.argv[1])):
+        for name, tick in ticks.items():
+            tick()
+            start = time.process_time()
+            for _ in range(TICKS):
+                tick()
+            found[name].append(1e6 * (time.process_time() - start) / TICKS)
+    print(json.dumps(found))
+    for node in nodes:
+        node.destroy_node()
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    main()
