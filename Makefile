@@ -24,7 +24,8 @@ PARAMETERS = -p record.enable:=true \
 	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
 
 .DELETE_ON_ERROR:
-.PHONY: help run test bench bench-quick bench-stability bench-skipping bench-instructions lint clean stale
+.PHONY: help run test bench bench-quick bench-stability bench-skipping bench-instructions bench-node soak lint \
+	clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -38,6 +39,8 @@ help:
 	@echo 'make bench-stability   every method and the engines over twelve decades of parameters; to benchmarks/'
 	@echo 'make bench-skipping    what a step costs with each term of a scene removed; to benchmarks/'
 	@echo 'make bench-instructions   run time against error as counts of instructions (needs valgrind); to benchmarks/'
+	@echo 'make bench-node   what the node costs beside a naive one (ten minutes; ARGS=--quick: two); to benchmarks/'
+	@echo 'make soak    ten minutes of the node at 1 kHz with two subscribers and 100 commands a second'
 	@echo 'make lint    check the style'
 	@echo 'make clean   remove .venv, caches and build output; recorded runs stay'
 	@echo
@@ -65,6 +68,12 @@ bench-skipping: $(VENV)/ready_for_benchmarks
 
 bench-instructions: $(VENV)/ready_for_benchmarks
 	@exec tools/in_venv python benchmarks/instructions.py $(ARGS)
+
+bench-node: $(VENV)/ready_for_benchmarks
+	@exec tools/in_venv python benchmarks/node.py $(ARGS)
+
+soak: $(VENV)/ready
+	@exec tools/in_venv python benchmarks/soak.py $(ARGS)
 
 lint: $(VENV)/ready_for_tests
 	@tools/in_venv python -m flake8

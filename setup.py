@@ -34,6 +34,7 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),
         files('config'),
+        files('examples'),
         files('launch'),
         files('scenes'),
     ],

@@ -33,7 +33,7 @@ def cross(a, b):
 
 
 def wrenches(y, hand):
-    """Return (force, torque) of spring, damper and all together; y: x, v, q (w, x, y, z), omega."""
+    """Return (force, torque) of spring, damper and all; y: x, v, q (w, x, y, z), omega."""
     x, v, (w, i, j, k), omega = y[0:3], y[3:6], y[6:10], y[10:13]
     arm = (RADIUS * 2 * (i * k + w * j), RADIUS * 2 * (j * k - w * i),
            RADIUS * (1 - 2 * (i * i + j * j)))

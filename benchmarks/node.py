@@ -42,7 +42,7 @@ def measured(kind, seconds, record=False):
 
 
 def highest_rate(kind, ladder, seconds, topics, tries):
-    """Return the highest rate [Hz] of a ladder that is held in one of some tries, and all that was seen."""
+    """Return the highest rate [Hz] of a ladder held in one of some tries, and what was seen."""
     seen = {}
     for rate in ladder:
         seen[rate] = []

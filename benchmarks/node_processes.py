@@ -114,6 +114,10 @@ class Subscriber:
         if self._process.stdout.readline() != 'ready\n':
             raise RuntimeError(f'nothing was heard of {node.name}')
 
+    @property
+    def pid(self):
+        return self._process.pid
+
     def begin(self, seconds, rate, commands=0):
         """Let it begin to measure."""
         asked = {'seconds': seconds, 'rate': rate, 'commands': commands}

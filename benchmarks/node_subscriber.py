@@ -79,7 +79,7 @@ class Ear:
 
 
 def measure(ears, publisher, seconds, rate, commands=0):
-    """Listen for so many seconds, sending so many commands a second; return what came, in figures."""
+    """Listen for some seconds, sending so many commands a second; return what came, in figures."""
     for ear in ears:
         ear.take()
         ear.clear()
@@ -115,7 +115,7 @@ def listen(ears, publisher, end, commands):
 
 
 def counts(ear, rate):
-    """Return how many messages were sent and lost, and what was not ticked, between first and last."""
+    """Return how many messages were sent and lost and missed, between the first and the last."""
     numbers, sent = np.array(ear.numbers), np.array(ear.sent)
     if len(numbers) < 2:
         return {'received': len(numbers), 'sent': len(numbers), 'lost': 0, 'rate': 0.0,
@@ -137,7 +137,7 @@ def deviations(times, rate):
 
 
 def latencies(sent, hand):
-    """Return from a command to the arrival of the first message that shows it, as percentiles [us]."""
+    """Return the times from a command to what first shows it, as percentiles [us]."""
     first = {}
     for data, arrived in zip(hand.data, hand.arrived):
         first.setdefault(deserialize_message(data, hand.kind).pose.position.x, arrived)

@@ -159,8 +159,8 @@ def plot(results, path):
         ratio = row['ratio'] or 1.0
         met = row['met'] is not False
         ax.barh(place, ratio - 1.0, left=1.0, color='#0072B2' if met else '#56B4E9')
-        ax.annotate(f'{ratio:.3g}  ({number(row["naive"])} to {number(row["ours"])} {row["unit"]})',
-                    (max(ratio, 1.0), place), xytext=(4, -3), textcoords='offset points',
+        text = f'{ratio:.3g}  ({number(row["naive"])} to {number(row["ours"])} {row["unit"]})'
+        ax.annotate(text, (max(ratio, 1.0), place), xytext=(4, -3), textcoords='offset points',
                     fontsize=8)
         if row['goal'] and row['goal'].endswith('x'):
             ax.plot(float(row['goal'][3:-1]), place, '|', color='k', markersize=16)

@@ -15,7 +15,7 @@ TICKS = 1000
 
 
 def measure(rounds):
-    """Return {'naive', 'ours': microseconds a tick of each round}, measured in a process of its own."""
+    """Return {'naive', 'ours': microseconds a tick of each round}, from another process."""
     done = subprocess.run([sys.executable, __file__, str(rounds)], check=True, text=True,
                           stdout=subprocess.PIPE)
     return json.loads(done.stdout)
