@@ -31,6 +31,17 @@ def simulate(folder, seconds):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, path
 
 
+def step_only(seconds):
+    """Return the processor time of the same run without messages and bag [s]."""
+    script = ('import time; from dynsim_ros.scene import load_scene; '
+              'from dynsim_ros.simulation import Simulator; '
+              f'simulator = Simulator(load_scene({SCENE!r}), rate={RATE}.0); simulator.run(0.1); '
+              f'start = time.process_time(); simulator.run({seconds}.0); '
+              'print(time.process_time() - start)')
+    return float(subprocess.run([sys.executable, '-c', script], check=True, text=True,
+                                stdout=subprocess.PIPE).stdout)
+
+
 def messages_of(path):
     """Return [(topic, type, stamp, bytes)] of a bag."""
     with path.open('rb') as stream:
@@ -59,17 +70,20 @@ def measure(rounds):
     """
     Return microseconds a message, each the median of some rounds, and how many topics there are.
 
-    'simulate': stepping, building and recording together; 'mcap.Writer': writing alone.
+    'simulate': stepping, building and recording together; 'recorded': the same less stepping;
+    'mcap.Writer': writing alone.
     """
-    ours, peer = [], []
+    ours, recorded, peer = [], [], []
     with tempfile.TemporaryDirectory(prefix='dynsim_ros_bench_') as folder:
         for _ in range(rounds):
             (short, path), (long, long_path) = (simulate(folder, t) for t in DURATIONS)
             messages = messages_of(path)
             more = summary_count(long_path) - len(messages)
             ours.append(1e6 * (long - short) / more)
+            stepping = step_only(DURATIONS[1] - DURATIONS[0])
+            recorded.append(1e6 * (long - short - stepping) / more)
             peer.append(1e6 * mcap_writer(messages, folder) / len(messages))
-    return {'simulate': ours, 'mcap.Writer': peer,
+    return {'simulate': ours, 'recorded': recorded, 'mcap.Writer': peer,
             'topics': len({topic for topic, *_ in messages})}
 
 

@@ -48,9 +48,10 @@ def soak(duration, depth, report=print):
 def faults(heard, elapsed):
     """Return what is wrong with what both subscribers heard."""
     return [f'{elapsed:.0f} s: subscriber {number}, {topic}: {counts["lost"]} lost, '
-            f'{counts["gaps"]} gaps between stamps, of {counts["sent"]}'
+            f'{counts["gaps"]} gaps between stamps, {counts["missed"]} ticks missed, of '
+            f'{counts["sent"]}'
             for number, each in enumerate(heard, 1) for topic, counts in each['topics'].items()
-            if counts['lost'] or counts['gaps']]
+            if counts['lost'] or counts['gaps'] or counts['missed']]
 
 
 def line(heard, node, elapsed):
