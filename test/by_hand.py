@@ -85,7 +85,7 @@ class ByHand:
         """Return the states at fractions of a step, from the method's dense output."""
         y_new, _ = self.step(t, h, y)
         normalise(self.bodies, self.rigid, y_new)
-        coefficients = np.zeros((DENSE_SIZE, len(y)))
+        coefficients = np.zeros(DENSE_SIZE * len(y))
         given = (self.model, self.drive)
         if self.method == 'stiff':
             dense_stiff(*given, stiff_table(), self.size, t, h, y, y_new, self.memory,

@@ -21,6 +21,7 @@ from .dop853 import dop853
 from .error_norm import error_norm
 from .gragg import gragg
 from .lane_schedule import Schedule
+from .logarithm import binary_logarithm, binary_power
 from .memory import lane_row, load, number_row, store
 from .radau import radau
 from .stiff import stiff
@@ -30,7 +31,7 @@ from ..physics.lanes import COUNT
 from ..physics.motion import rates
 from ..physics.state import counts, moving_size, normalise
 
-# The clock: whole seconds, end and length of the last step, length of the next one,
+# The clock: whole seconds, end and length of the last step, length of the next one, binary
 # logarithm of the last error estimate over the tolerance, whether the dense output of the last
 # step is built; for how many steps the watch has seen what it waits for, and the steps have become
 # shorter; what rounding leaves of the error estimate of a step.
@@ -45,7 +46,7 @@ COUNTS_SIZE = 4
 
 REACHED, BUDGET_SPENT, STEP_TOO_SHORT, SWITCH = range(4)
 
-_LOG_SAFETY, _LOG_AT_ONCE = math.log(0.9), math.log(0.6)
+_LOG_SAFETY, _LOG_AT_ONCE = math.log2(0.9), math.log2(0.6)
 _SLOWEST, _FASTEST = 0.1, 5.0
 _LONGEST = 100.0
 # Of the time: a step that is not longer than some units of its last place is none.
@@ -114,11 +115,12 @@ def step_factor(logarithm, last, power):
     """
     Return by how much the next step may be longer: Gustafsson's PI control.
 
-    logarithm, last: of the error estimate over the tolerance, of this step and of the one before
-    it. Where the error is far below the tolerance the step goes where it should be at once.
+    logarithm, last: to base 2, of the error estimate over the tolerance, of this step and of the
+    one before it. Where the error is far below the tolerance the step goes where it should be at
+    once.
     """
-    return math.exp(max(_LOG_SAFETY - (0.5 * logarithm - 0.2 * last) / power,
-                        _LOG_AT_ONCE - logarithm / power))
+    return binary_power(max(_LOG_SAFETY - (0.5 * logarithm - 0.2 * last) / power,
+                            _LOG_AT_ONCE - logarithm / power))
 
 
 @formula
@@ -141,10 +143,14 @@ def watched(watch, step, seen):
 
 
 @formula
-def place_in_step(grid, number, clock):
-    """Return where an instant of the grid lies in the last step: -1: start, 1: end."""
+def place_in_step(grid, number, clock, per_half):
+    """
+    Return where an instant of the grid lies in the last step: -1: start, 1: end.
+
+    per_half: one over half the step's length.
+    """
     instant = grid.first + number * grid.period - np.int64(clock[BASE]) * 1000000000
-    return 1.0 + 2.0 * (instant * 1e-9 - clock[END]) / clock[STEP]
+    return 1.0 + (instant * 1e-9 - clock[END]) * per_half
 
 
 @formula
@@ -152,9 +158,10 @@ def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted,
               y_new, rate_new, error, memory, dense):
     """Write the states of the grid that lie in the last step; build the dense output first."""
     lanes = lane_row(model.several, memory, 1, size)
+    per_half = 2.0 / clock[STEP]
     while grid.done[0] < grid.states.shape[0]:
         done = grid.done[0]
-        memory[0] = place_in_step(grid, done, clock)
+        memory[0] = place_in_step(grid, done, clock, per_half)
         if memory[0] > 1.0:
             break
         if clock[DENSE] == 0.0:
@@ -163,11 +170,11 @@ def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted,
                 tableaux.dense, size, clock[BASE] + clock[END] - clock[STEP], clock[STEP], y,
                 rate, y_new, rate_new, memory, dense)
             clock[DENSE] = 1.0
-            memory[0] = place_in_step(grid, done, clock)
+            memory[0] = place_in_step(grid, done, clock, per_half)
         together = 1
         if done + COUNT <= grid.states.shape[0]:
             for k in range(1, COUNT):
-                memory[k] = place_in_step(grid, done + k, clock)
+                memory[k] = place_in_step(grid, done + k, clock, per_half)
             if memory[COUNT - 1] <= 1.0:
                 together = COUNT
         write_states(bodies, rigid, size, dense, done, together, memory, error, lanes,
@@ -212,7 +219,8 @@ def begin(model, drive, bodies, rigid, size, power, tolerance, fastest, clock, y
         for i in range(size):
             change[i] = (change[i] - rate[i]) / h
         largest = max(error_norm(bodies, rigid, y, rate), error_norm(bodies, rigid, y, change))
-        clock[NEXT] = min(100.0 * h, (tolerance / max(largest, 1e-15)) ** (1.0 / power), _LONGEST)
+        longest = binary_power(binary_logarithm(tolerance / max(largest, 1e-15)) / power)
+        clock[NEXT] = min(100.0 * h, longest, _LONGEST)
 
 
 @kernel
@@ -226,7 +234,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
     most attempts;
     watch: steps that stay longer than this [s], or where it is negative shorter than -watch, end
     the run with SWITCH; clock, counted: see above; states: (4, size) start and end of the last
-    step, the rates there; dense: (DENSE_SIZE, size). Returns REACHED, BUDGET_SPENT,
+    step, the rates there; dense: (size * DENSE_SIZE,). Returns REACHED, BUDGET_SPENT,
     STEP_TOO_SHORT or SWITCH.
     """
     bodies, rigid = counts(model)
@@ -288,11 +296,11 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
             ratio = error_norm(bodies, rigid, y_new, error) / tolerance
             if not ratio < 1e30:
                 ratio = 1e30
-            logarithm = math.log(max(ratio, 1e-30))
+            logarithm = binary_logarithm(max(ratio, 1e-30))
             accepted = ratio <= 1.0
             if not accepted:
                 stalled = stalled + 1 if is_rounding(
-                    logarithm - before, math.log(h / h_before), power,
+                    logarithm - before, binary_logarithm(h / h_before), power,
                     ratio * tolerance) else 0
                 before, h_before = logarithm, h
                 accepted = stalled >= 2
@@ -313,7 +321,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
                 clock[NEXT] = max(longer, natural) if h < natural else longer
                 counted[STEPS] += 1
             else:
-                factor = math.exp(_LOG_SAFETY - logarithm / power)
+                factor = binary_power(_LOG_SAFETY - logarithm / power)
                 clock[NEXT] = h * min(max(factor, _SLOWEST), 0.7)
                 counted[REJECTED] += 1
         if not accepted:

@@ -6,9 +6,8 @@ import numpy as np
 
 from .adaptive import (advance, BASE, BUDGET_SPENT, CLOCK_SIZE, COUNTS_SIZE, END, FLOOR, Grid,
                        MARGIN, NEXT, REJECTED, STEP, STEP_TOO_SHORT, STEPS, TO_BEGIN)
-from .dense_output import DENSE_SIZE
 from .entry import entry
-from .memory import new_memory
+from .memory import DENSE_SIZE, new_memory
 from .stiffness import EXPLICIT_REACH, spring_rates
 
 # Farther ahead than any run goes [ns].
@@ -90,7 +89,7 @@ class AdaptiveSteps(Walk):
         self._memory = new_memory(size, springs)
         self._model, self._drive = model, drive
         self.clock, self.counts = np.zeros(CLOCK_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
-        self.states, self._dense = np.zeros((4, size)), np.zeros((DENSE_SIZE, size))
+        self.states, self._dense = np.zeros((4, size)), np.zeros(DENSE_SIZE * size)
         self.origin = 0
         self._fastest = spring_rates(model)[0] / EXPLICIT_REACH
         self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))

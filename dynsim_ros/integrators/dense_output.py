@@ -19,18 +19,17 @@ from .dop853 import dense_dop853
 from .gragg import midpoint
 from .lane_schedule import extrapolation_weights
 from .linearly_implicit import linearly_implicit_substep
-from .memory import lane_row, STAGES
+from .memory import DENSE_SIZE, lane_row, STAGES
 from .radau import dense_radau
 from .radau_tableau import nodes
 from ..physics.arms import arm_of_state, begin_arm, swap_arms, with_arm
+from ..physics.fused import fused
 from ..physics.jit import formula, part
-from ..physics.lanes import choose, COUNT, lane, lanes_at, spread, total
+from ..physics.lanes import choose, COUNT, lane, lanes_at, put_lanes, spread
 from ..physics.motion import rates
 from ..physics.state import omega_at, put_quaternion, quaternion, quaternion_at
 
-# Rows of the array of coefficients: powers 0 to 11 of s, which is -1 at the start and 1 at the
-# end.
-DENSE_SIZE = 12
+_FOURS = DENSE_SIZE // COUNT
 
 # Instants within a step, on s: near the roots of the polynomials that are best for either.
 _EXPLICIT_NODES = [Fraction(s, 100) for s in (-77, -29, 29, 77)]
@@ -69,10 +68,11 @@ def _inverse(rows):
     return [row[count:] for row in rows]
 
 
-# Places of the parts of the tables: the instants, the weights of the sequences, then a row for
-# each power: weights of the lanes' values, of the lanes' rates (or second values), and of the
-# ends.
-_TARGETS, _SEQUENCES, _ROWS, _ROW = 0, 2 * COUNT, 4 * COUNT, 3 * COUNT
+# Places of the parts of the tables: the instants, the weights of the sequences, then a column for
+# each of these, with its weights in all powers: the lanes' values, the lanes' rates (or second
+# values), the value at the end, and the rates at the start and at the end.
+_TARGETS, _SEQUENCES, _COLUMNS = 0, 2 * COUNT, 4 * COUNT
+_AT_END, _RATE_AT_START, _RATE_AT_END = 2 * COUNT, 2 * COUNT + 1, 2 * COUNT + 2
 
 
 @lru_cache
@@ -80,7 +80,7 @@ def explicit_table():
     """Return the packed table of the interpolation after an explicit step."""
     ends = [Fraction(-1), Fraction(1)]
     nodes = [ends[0], *_EXPLICIT_NODES, ends[1]]
-    table = np.zeros(_ROWS + _ROW * DENSE_SIZE)
+    table = np.zeros(_COLUMNS + DENSE_SIZE * (_RATE_AT_END + 1))
     # In fractions of the step, from the start or back from the end.
     table[:COUNT] = [(s + 1) / 2 if s < 0 else (s - 1) / 2 for s in _EXPLICIT_NODES]
     table[COUNT:2 * COUNT] = [float(s < 0) for s in _EXPLICIT_NODES]
@@ -89,8 +89,8 @@ def explicit_table():
     table[_SEQUENCES:_SEQUENCES + len(substeps)] = [weights[n] for n in substeps]
     for d, row in enumerate(_powers(nodes, nodes)):
         values, rates_ = row[:5], row[5:]
-        table[_ROWS + _ROW * d:_ROWS + _ROW * (d + 1)] = [
-            *values[:4], *rates_[1:5], values[4], rates_[0], rates_[5], 0]
+        table[_COLUMNS + d::DENSE_SIZE] = [*values[:4], *rates_[1:5], values[4], rates_[0],
+                                           rates_[5]]
     return table
 
 
@@ -98,14 +98,20 @@ def explicit_table():
 def stiff_table():
     """Return the packed table of the interpolation after a linearly implicit step."""
     nodes = [Fraction(-1), *_STIFF_NODES, Fraction(1)]
-    table = np.zeros(_ROWS + _ROW * DENSE_SIZE)
+    table = np.zeros(_COLUMNS + DENSE_SIZE * (_AT_END + 1))
     table[:2 * COUNT] = [(s + 1) / 2 for s in _STIFF_NODES]
     substeps = list(range(1, _STIFF_STAGES + 1))
     weights = extrapolation_weights(substeps, 1)
     table[_SEQUENCES:_SEQUENCES + len(substeps)] = [weights[n] for n in substeps]
     for d, row in enumerate(_powers(nodes, [])):
-        table[_ROWS + _ROW * d:_ROWS + _ROW * (d + 1)] = [*row, 0, 0, 0]
+        table[_COLUMNS + d::DENSE_SIZE] = row
     return table
+
+
+@formula
+def column(table, number, powers):
+    """Return the weights of a column in four powers of s; powers: which four of them."""
+    return lanes_at(table, _COLUMNS + DENSE_SIZE * number + COUNT * powers)
 
 
 @lru_cache
@@ -161,16 +167,18 @@ def dense_explicit(model, drive, table, size, t, step, y, rate, y_new, rate_new,
     fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory, reached)
     now = choose(lanes_at(table, COUNT), t, t + step) + step * lanes_at(table, _TARGETS)
     rates(model, drive, now, reached, f)
-    for d in range(DENSE_SIZE):
-        place = _ROWS + _ROW * d
-        values, rates_ = lanes_at(table, place), lanes_at(table, place + COUNT)
-        at_end, rate_start, rate_end = (table[place + 8], table[place + 9], table[place + 10])
-        for i in range(size):
-            dense[d, i] = (total(values * (reached[i] - y[i]) + (0.5 * step) * (rates_ * f[i]))
-                           + (at_end * (y_new[i] - y[i])
-                              + 0.5 * step * (rate_start * rate[i] + rate_end * rate_new[i])))
+    half = 0.5 * step
     for i in range(size):
-        dense[0, i] += y[i]
+        values, slopes = reached[i] - y[i], half * f[i]
+        for powers in range(_FOURS):
+            sums = column(table, _AT_END, powers) * (y_new[i] - y[i])
+            sums = fused(column(table, _RATE_AT_START, powers), half * rate[i], sums)
+            sums = fused(column(table, _RATE_AT_END, powers), half * rate_new[i], sums)
+            for k in range(COUNT):
+                sums = fused(column(table, k, powers), lane(values, k), sums)
+                sums = fused(column(table, COUNT + k, powers), lane(slopes, k), sums)
+            put_lanes(dense, DENSE_SIZE * i + COUNT * powers, sums)
+        dense[DENSE_SIZE * i] += y[i]
     return _EXPLICIT_STAGES * _EXPLICIT_STAGES + 1
 
 
@@ -181,9 +189,10 @@ def dense_stiff(model, drive, table, size, t, step, y, y_new, memory, dense):
     reached = lane_row(model.several, memory, 1, size)
     f = lane_row(model.several, memory, 2, size)
     responses = lane_row(model.several, memory, 3, size)
-    for d in range(DENSE_SIZE):
-        for i in range(size):
-            dense[d, i] = table[_ROWS + _ROW * d + 8] * (y_new[i] - y[i])
+    for i in range(size):
+        for powers in range(_FOURS):
+            put_lanes(dense, DENSE_SIZE * i + COUNT * powers,
+                      column(table, _AT_END, powers) * (y_new[i] - y[i]))
     for batch in range(2):
         way = step * lanes_at(table, _TARGETS + COUNT * batch)
         for i in range(size):
@@ -199,12 +208,16 @@ def dense_stiff(model, drive, table, size, t, step, y, y_new, memory, dense):
             weight = table[_SEQUENCES + stage]
             for i in range(size):
                 reached[i] = reached[i] + weight * (here[i] - y[i])
-        for d in range(DENSE_SIZE):
-            values = lanes_at(table, _ROWS + _ROW * d + COUNT * batch)
-            for i in range(size):
-                dense[d, i] += total(values * reached[i])
+        for i in range(size):
+            for powers in range(_FOURS):
+                place = DENSE_SIZE * i + COUNT * powers
+                sums = lanes_at(dense, place)
+                for k in range(COUNT):
+                    weights = column(table, COUNT * batch + k, powers)
+                    sums = fused(weights, lane(reached[i], k), sums)
+                put_lanes(dense, place, sums)
     for i in range(size):
-        dense[0, i] += y[i]
+        dense[DENSE_SIZE * i] += y[i]
     return _STIFF_STAGES * (_STIFF_STAGES + 1)
 
 
@@ -227,10 +240,10 @@ def build_dense(stiff_plan, dop853_data, radau_data, model, drive, table, size, 
 def evaluate_dense(bodies, rigid, size, dense, s, y):
     """Write the state at s, from -1 at the start of the step to 1 at its end, to Cells y."""
     for i in range(size):
-        y[i] = dense[DENSE_SIZE - 1, i] + 0.0 * s
-    for d in range(DENSE_SIZE - 2, -1, -1):
-        for i in range(size):
-            y[i] = y[i] * s + dense[d, i]
+        x = dense[DENSE_SIZE * i + DENSE_SIZE - 1] + 0.0 * s
+        for d in range(DENSE_SIZE - 2, -1, -1):
+            x = fused(x, s, dense[DENSE_SIZE * i + d])
+        y[i] = x
     for i in range(quaternion_at(bodies), omega_at(bodies, rigid), 4):
         # The norm is near 1: one step of Newton's method is exact.
         q = quaternion(y, i)

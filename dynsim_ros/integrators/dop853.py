@@ -10,7 +10,7 @@ import math
 
 from .dop853_tableau import A_AT, ALL_STAGES, C_AT, D_AT, E3_AT, E5_AT, STAGES
 from .error_norm import error_norm
-from .memory import number_row
+from .memory import DENSE_SIZE, number_row
 from ..physics.jit import formula
 from ..physics.lanes import COUNT
 from ..physics.motion import rates
@@ -85,8 +85,9 @@ def times(size, slope, dense):
     """Multiply the polynomials by (1 + slope s) / 2."""
     for i in range(size):
         for d in range(_DEGREE, 0, -1):
-            dense[d, i] = 0.5 * dense[d, i] + 0.5 * slope * dense[d - 1, i]
-        dense[0, i] = 0.5 * dense[0, i]
+            j = DENSE_SIZE * i + d
+            dense[j] = 0.5 * dense[j] + 0.5 * slope * dense[j - 1]
+        dense[DENSE_SIZE * i] = 0.5 * dense[DENSE_SIZE * i]
 
 
 @formula
@@ -98,25 +99,24 @@ def dense_dop853(model, drive, data, size, t, h, y, rate, y_new, rate_new, memor
     take_stages(model, drive, data, size, t, h, y, 1, STAGES, memory, stage, k)
     keep_stage(size, STAGES, rate_new, memory)
     take_stages(model, drive, data, size, t, h, y, STAGES + 1, ALL_STAGES, memory, stage, k)
-    for i in range(size):
-        for d in range(dense.shape[0]):
-            dense[d, i] = 0.0
+    for j in range(DENSE_SIZE * size):
+        dense[j] = 0.0
     for term in range(3, -1, -1):
         for i in range(size):
             k[i] = 0.0
         add_stages(size, data, D_AT + ALL_STAGES * term, ALL_STAGES, h, memory, k)
         for i in range(size):
-            dense[0, i] = dense[0, i] + k[i]
+            dense[DENSE_SIZE * i] = dense[DENSE_SIZE * i] + k[i]
         times(size, 1.0 if term % 2 == 1 else -1.0, dense)
     for i in range(size):
-        dense[0, i] += 2.0 * (y_new[i] - y[i]) - h * (rate_new[i] + rate[i])
+        dense[DENSE_SIZE * i] += 2.0 * (y_new[i] - y[i]) - h * (rate_new[i] + rate[i])
     times(size, 1.0, dense)
     for i in range(size):
-        dense[0, i] += h * rate[i] - (y_new[i] - y[i])
+        dense[DENSE_SIZE * i] += h * rate[i] - (y_new[i] - y[i])
     times(size, -1.0, dense)
     for i in range(size):
-        dense[0, i] += y_new[i] - y[i]
+        dense[DENSE_SIZE * i] += y_new[i] - y[i]
     times(size, 1.0, dense)
     for i in range(size):
-        dense[0, i] += y[i]
+        dense[DENSE_SIZE * i] += y[i]
     return STAGES + 2

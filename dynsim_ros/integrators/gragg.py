@@ -15,9 +15,11 @@ from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .memory import lane_row
 from ..physics.arms import (arm_of_state, begin_arm, put_arm, restart_arm, step_arm,
                             with_arm)
+from ..physics.fused import fused
 from ..physics.jit import part
 from ..physics.lanes import choose, COUNT, lanes_at, spread
 from ..physics.motion import rates
+from ..physics.state import counts
 
 STAGES = 8
 
@@ -39,8 +41,18 @@ def midpoint(model, drive, size, t, h, y, arm, behind, here, state, f):
         state[i] = y[i] + here[i]
     put_arm(arm, here, state)
     rates(model, drive, t, state, f)
-    for i in range(size):
-        behind[i] = behind[i] + (h + h) * f[i]
+    bodies, rigid = counts(model)
+    step = h + h
+    for i in range(3 * bodies):
+        behind[i] = fused(step, f[i], behind[i])
+    for i in range(3 * bodies, 6 * bodies):
+        behind[i] = fused(step, f[i], behind[i])
+    for i in range(6 * bodies, 6 * bodies + 4 * rigid):
+        behind[i] = fused(step, f[i], behind[i])
+    for i in range(6 * bodies + 4 * rigid, 6 * bodies + 7 * rigid):
+        behind[i] = fused(step, f[i], behind[i])
+    for i in range(6 * bodies + 7 * rigid, size):
+        behind[i] = fused(step, f[i], behind[i])
     step_arm(arm, h, state, behind)
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..physics.fused import fused
 from ..physics.jit import formula
 from ..physics.lanes import COUNT, lanes_at, total
 
@@ -49,8 +50,8 @@ def combine(table, size, y, first, second, y_new, error):
     w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
     e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
     for i in range(size):
-        y_new[i] = y[i] + total(w_1 * first[i] + w_2 * second[i])
-        error[i] = total(e_1 * first[i] + e_2 * second[i])
+        y_new[i] = y[i] + total(fused(w_1, first[i], w_2 * second[i]))
+        error[i] = total(fused(e_1, first[i], e_2 * second[i]))
 
 
 def extrapolation_weights(substeps, power):

@@ -21,15 +21,15 @@ from numba import literal_unroll
 from .mass_response import angular_response, fill_responses, RESPONSE_SIZE
 from .memory import spring_place, SPRING_SIZE
 from ..physics.cells import lane_cells
-from ..physics.forces import anchor_power, body_of, spring_motion
+from ..physics.forces import anchor_speed, body_of, group_size, spring_motion
 from ..physics.jit import formula
 from ..physics.lanes import COUNT, spread
 from ..physics.motion import apply_air, apply_gravity, apply_pushes, chosen, matrix_at, member
 from ..physics.rotation import quaternion_rate_world, rotation_matrix
-from ..physics.spring_damper import length_rate
+from ..physics.spring_damper import spring_tension
 from ..physics.state import (counts, omega_at, put_quaternion, quaternion,
                              quaternion_at, velocity_at, work_at)
-from ..physics.vector import (accumulate, add, at, cross, dot, put, scale, subtract, transform,
+from ..physics.vector import (accumulate, add, at, cross, dot, put, scale, transform,
                               transform_back)
 
 # Where the parts of what is kept of a spring lie: u, arm x u at P and at Q, the angular
@@ -56,31 +56,31 @@ def damping_of(damping, s):
 
 
 @formula
-def gather_group(several, bodies, rigid, p, q, stiffness, natural_length, epsilon, damping,
-                 anchors, moving, works, first, t, h, y, springs):
+def gather_group(several, connections, bodies, rigid, p, q, stiffness, natural_length, epsilon,
+                 damping, anchors, moving, works, first, t, h, y, springs):
     """Write geometry and pull of the springs of a group to `springs`, from number `first` on."""
-    for s in range(stiffness.shape[0]):
-        length, u, v_p, v_q, p_arm, q_arm = spring_motion(
+    for s in range(group_size(connections, stiffness)):
+        length, u, p_turn, q_turn, p_rate, q_rate = spring_motion(
             several, bodies, rigid, p, q, epsilon, anchors, moving, t, s, y)
         j = SPRING_SIZE * (first + s)
         strength = h * stiffness[s] + damping_of(damping, s)
         put(springs, j, u)
-        put(springs, j + ARMS, cross(p_arm, u))
-        put(springs, j + ARMS + 3, cross(q_arm, u))
+        put(springs, j + ARMS, p_turn)
+        put(springs, j + ARMS + 3, q_turn)
         springs[j + STRENGTH] = strength
-        spring_pull = -stiffness[s] * (length - natural_length[s])
-        springs[j + PULL] = spring_pull - strength * length_rate(subtract(v_q, v_p), u)
-        keep_for_works(works, p.anchor, q.anchor, spring_pull, damping_of(damping, s), v_p, v_q,
-                       u, j, springs)
+        spring_pull = spring_tension(stiffness[s], length, natural_length[s])
+        springs[j + PULL] = spring_pull - strength * (q_rate - p_rate)
+        keep_for_works(works, p.anchor, q.anchor, spring_pull, damping_of(damping, s), p_rate,
+                       q_rate, u, j, springs)
 
 
 @formula
-def keep_for_works(works, p_anchor, q_anchor, spring_pull, damping, v_p, v_q, u, j, springs):
+def keep_for_works(works, p_anchor, q_anchor, spring_pull, damping, p_rate, q_rate, u, j, springs):
     """Keep what the works of a spring need, if they are counted."""
     if works is not None:
         springs[j + SPRING_PULL] = spring_pull
         springs[j + DAMPING] = spread(damping)
-        springs[j + ANCHOR_SPEED] = u[0] * 0.0 + anchor_power(p_anchor, q_anchor, v_p, v_q, u)
+        springs[j + ANCHOR_SPEED] = u[0] * 0.0 + anchor_speed(p_anchor, q_anchor, p_rate, q_rate)
 
 
 @formula
@@ -113,7 +113,7 @@ def gather(several, bodies, rigid, connections, groups, anchors, moving, works, 
     """Write geometry and pull of all springs to `springs`."""
     first = 0
     for group in literal_unroll(groups):
-        gather_group(several, bodies, rigid, group.p, group.q, group.stiffness,
+        gather_group(several, connections, bodies, rigid, group.p, group.q, group.stiffness,
                      group.natural_length, group.epsilon, group.damping, anchors, moving, works,
                      first_of(connections, first), t, h, y, springs)
         first += group.stiffness.shape[0]

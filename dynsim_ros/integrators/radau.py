@@ -18,15 +18,15 @@ from numba import literal_unroll
 
 from .linearly_implicit import damping_of, first_of, spring_count
 from .mass_response import angular_response, fill_responses
-from .memory import lane_row, stage_place, STAGE_ROWS, STAGE_SPRING_SIZE, STAGES
+from .memory import DENSE_SIZE, lane_row, stage_place, STAGE_ROWS, STAGE_SPRING_SIZE, STAGES
 from .radau_tableau import A, A2, CAUTION, ERROR, NODES, SLOPE
-from ..physics.forces import body_of, spring_motion
+from ..physics.forces import body_of, group_size, spring_motion
 from ..physics.jit import formula
 from ..physics.lanes import COUNT, lanes_at, put_lanes, spread, total
 from ..physics.motion import rates
 from ..physics.rotation import quaternion_rate_world
 from ..physics.state import (counts, omega_at, quaternion_at, velocity_at, work_at)
-from ..physics.vector import cross, dot
+from ..physics.vector import dot
 
 # Parts of what is kept of a spring at every stage: u, arm x u at P and at Q, the angular
 # accelerations by these, stiffness, damping.
@@ -119,15 +119,15 @@ def keep_vector(memory, place, part, batch, a):
 
 
 @formula
-def gather_group(several, bodies, rigid, general_body, p, q, stiffness, epsilon, damping, anchors,
-                 moving, first, spring_bodies, t, y, responses, batch, memory, springs):
+def gather_group(several, connections, bodies, rigid, general_body, p, q, stiffness, epsilon,
+                 damping, anchors, moving, first, spring_bodies, t, y, responses, batch, memory,
+                 springs):
     """Write the geometry of the springs of a group at four stages."""
-    for s in range(stiffness.shape[0]):
-        _, u, _, _, p_arm, q_arm = spring_motion(several, bodies, rigid, p, q, epsilon, anchors,
-                                                 moving, t, s, y)
+    for s in range(group_size(connections, stiffness)):
+        _, u, p_turn, q_turn, _, _ = spring_motion(several, bodies, rigid, p, q, epsilon,
+                                                   anchors, moving, t, s, y)
         place = springs + STAGES * STAGE_SPRING_SIZE * (first + s)
         keep_vector(memory, place, 0, batch, u)
-        p_turn, q_turn = cross(p_arm, u), cross(q_arm, u)
         keep_vector(memory, place, _ARMS, batch, p_turn)
         keep_vector(memory, place, _ARMS + 3, batch, q_turn)
         for end in range(2):
@@ -153,9 +153,9 @@ def gather(model, drive, bodies, rigid, groups, table, size, t, h, memory, here,
             fill_responses(model, spread(0.0), y, responses)
             first = 0
             for group in literal_unroll(groups):
-                gather_group(model.several, bodies, rigid, model.general_body, group.p, group.q,
-                             group.stiffness, group.epsilon, group.damping, drive.anchors,
-                             drive.moving, first_of(model.connections, first),
+                gather_group(model.several, model.connections, bodies, rigid, model.general_body,
+                             group.p, group.q, group.stiffness, group.epsilon, group.damping,
+                             drive.anchors, drive.moving, first_of(model.connections, first),
                              model.spring_bodies, t + h * lanes_at(table, NODES + COUNT * batch),
                              y, responses, batch, memory, springs)
                 first += group.stiffness.shape[0]
@@ -410,10 +410,10 @@ def dense_radau(model, table, size, y, memory, dense):
     """Write the polynomials of the last step: through its start and its stages."""
     bodies, rigid = counts(model)
     here = here_place(work_at(bodies, rigid) + 4, model.connections)
-    for d in range(dense.shape[0]):
-        for i in range(size):
+    for i in range(size):
+        for d in range(DENSE_SIZE):
             value = y[i] if d == 0 else 0.0
             for stage in range(STAGES):
                 value += table[STAGES * d + stage] * (memory[here + STAGES * i + stage] - y[i])
-            dense[d, i] = value
+            dense[DENSE_SIZE * i + d] = value
     return 0

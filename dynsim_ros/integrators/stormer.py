@@ -12,6 +12,7 @@ Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.14.
 
 from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .memory import lane_row
+from ..physics.fused import fused
 from ..physics.jit import formula
 from ..physics.lanes import choose, COUNT, lanes_at, spread
 from ..physics.motion import accelerations
@@ -99,7 +100,7 @@ def stormer(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
             for i in range(size):
                 first[i] = choose(ended, reached[i], first[i])
         for i in range(3 * bodies):
-            d[i] = d[i] + (h * h) * f[3 * bodies + i]
+            d[i] = fused(h * h, f[3 * bodies + i], d[i])
             x[i] = x[i] + d[i]
         now = now + h
         if row >= plan.first_end:

@@ -14,6 +14,7 @@ States with an arm are Cells; it lies behind the state of a single body, works i
 from numba import types
 from numba.extending import overload
 
+from .fused import fused
 from .jit import formula
 from .kinematics import attachment_arm
 from .lanes import choose
@@ -135,8 +136,9 @@ def put_arm(arm, here, state):
 def step_arm(arm, h, state, behind):
     """Add 2 h times the arm's rate in a state, as the midpoint rule does."""
     if arm is not None:
-        put(behind, ARM, add(at(behind, ARM),
-                             scale(h + h, cross(at(state, _OMEGA), at(state, ARM)))))
+        rate = cross(at(state, _OMEGA), at(state, ARM))
+        for i in range(3):
+            behind[ARM + i] = fused(h + h, rate[i], behind[ARM + i])
 
 
 @formula

@@ -6,7 +6,7 @@ from numba import literal_unroll
 
 from .energy import (gravitational_energy, rotational_energy, scalar_rotational_energy,
                      spring_energy, translational_energy)
-from .forces import end_motion
+from .forces import end_place
 from .jit import formula, kernel
 from .motion import matrix_at
 from .rotation import rotation_matrix
@@ -20,10 +20,10 @@ def group_energy(several, bodies, rigid, p, q, stiffness, natural_length, epsilo
     """Return the energy stored in one SpringGroup [J]."""
     total = 0.0
     for s in range(stiffness.shape[0]):
-        r_p, _, _ = end_motion(several, bodies, rigid, p.anchor, p.particle, p.body, p.offset, s,
-                               anchors, True, t, y)
-        r_q, _, _ = end_motion(several, bodies, rigid, q.anchor, q.particle, q.body, q.offset, s,
-                               anchors, True, t, y)
+        r_p, _ = end_place(several, bodies, p.anchor, p.particle, p.body, p.offset, s, anchors,
+                           True, t, y)
+        r_q, _ = end_place(several, bodies, q.anchor, q.particle, q.body, q.offset, s, anchors,
+                           True, t, y)
         length, _ = length_and_direction(subtract(r_q, r_p), epsilon[s])
         total += spring_energy(stiffness[s], length, natural_length[s])
     return total

@@ -11,14 +11,15 @@ The branches on None are decided when a function is compiled: a kind of end that
 springs does not have is not in its code. Each is on an argument, as the compiler asks for.
 """
 
-from .air_resistance import air_force, air_torque
+from .air_resistance import relative_velocity
 from .energy import power
-from .equations_of_motion import moment_of_force
+from .fused import fused
 from .jit import formula
-from .kinematics import attachment_arm, attachment_position, attachment_velocity
-from .spring_damper import damper_force, length_and_direction, length_rate, spring_force
+from .kinematics import attachment_arm, attachment_position, attachment_rate
+from .spring_damper import (damper_tension, length_and_direction, length_and_inverse_square,
+                            spring_tension)
 from .state import ARM, omega_at, quaternion, quaternion_at, velocity_at, work_at
-from .vector import accumulate, add, at, scale, subtract
+from .vector import accumulate_scaled, add, at, cross, dot, scale, subtract
 
 
 @formula
@@ -47,15 +48,6 @@ def arm_of(bodies, i, offset, s, y):
 
 
 @formula
-def point_motion(bodies, rigid, i, offset, s, y):
-    """Return position and velocity in world of an attachment point of body i, and its arm."""
-    position, velocity = particle_motion(bodies, i, y)
-    omega = at(y, omega_at(bodies, rigid) + 3 * i)
-    arm = arm_of(bodies, i, offset, s, y)
-    return attachment_position(position, arm), attachment_velocity(velocity, omega, arm), arm
-
-
-@formula
 def body_of(several, index, s):
     """Return the body that spring s is at; a single body is known when compiled."""
     if several is not None:
@@ -64,133 +56,194 @@ def body_of(several, index, s):
 
 
 @formula
-def end_motion(several, bodies, rigid, anchor, particle, body, offset, s, anchors, moving, t, y):
-    """Return position, velocity and arm (points: zero) of one end of spring s."""
+def end_place(several, bodies, anchor, particle, body, offset, s, anchors, moving, t, y):
+    """Return position and arm (points: zero) of one end of spring s."""
     arm = (0.0, 0.0, 0.0)
     if anchor is not None:
-        position, velocity = anchor_motion(anchors, moving, anchor[s], t)
+        position, _ = anchor_motion(anchors, moving, anchor[s], t)
     if particle is not None:
-        position, velocity = particle_motion(bodies, body_of(several, particle, s), y)
+        position, _ = particle_motion(bodies, body_of(several, particle, s), y)
     if body is not None:
-        position, velocity, arm = point_motion(bodies, rigid, body_of(several, body, s),
-                                               offset, s, y)
-    return position, velocity, arm
+        centre, _ = particle_motion(bodies, body_of(several, body, s), y)
+        arm = arm_of(bodies, body_of(several, body, s), offset, s, y)
+        position = attachment_position(centre, arm)
+    return position, arm
 
 
 @formula
-def apply_at_end(several, bodies, rigid, particle, body, s, arm, force, out):
-    """Add a force at an end of spring s, and its moment, to what acts on the body there."""
+def anchor_rate(anchors, moving, i, u):
+    """Return the velocity of anchor i along u [m/s]."""
+    if moving is not None:
+        return dot(at(anchors[i], 3), u)
+    return 0.0
+
+
+@formula
+def end_rate(several, bodies, rigid, anchor, particle, body, s, anchors, moving, u, turn, y):
+    """Return the velocity of one end of spring s along u, of any length; turn: its arm x u."""
+    if anchor is not None:
+        return anchor_rate(anchors, moving, anchor[s], u)
     if particle is not None:
-        accumulate(out, velocity_at(bodies) + 3 * body_of(several, particle, s), force)
+        return dot(at(y, velocity_at(bodies) + 3 * body_of(several, particle, s)), u)
     if body is not None:
         i = body_of(several, body, s)
-        accumulate(out, velocity_at(bodies) + 3 * i, force)
-        accumulate(out, omega_at(bodies, rigid) + 3 * i, moment_of_force(arm, force))
+        return attachment_rate(at(y, velocity_at(bodies) + 3 * i),
+                               at(y, omega_at(bodies, rigid) + 3 * i), u, turn)
+    return 0.0
 
 
 @formula
-def apply_at_ends(several, bodies, rigid, p, q, s, p_arm, q_arm, force, out):
-    """Add a spring's force on Q to what Q is on and its opposite to what P is on."""
-    apply_at_end(several, bodies, rigid, q.particle, q.body, s, q_arm, force, out)
-    apply_at_end(several, bodies, rigid, p.particle, p.body, s, p_arm, scale(-1.0, force), out)
+def spring_ends(several, bodies, p, q, anchors, moving, t, s, y):
+    """Return the vector from P to Q of spring s of a group and the arms of P and Q: (3,) [m]."""
+    r_p, p_arm = end_place(several, bodies, p.anchor, p.particle, p.body, p.offset, s, anchors,
+                           moving, t, y)
+    r_q, q_arm = end_place(several, bodies, q.anchor, q.particle, q.body, q.offset, s, anchors,
+                           moving, t, y)
+    return subtract(r_q, r_p), p_arm, q_arm
 
 
 @formula
-def anchor_power(p_anchor, q_anchor, v_p, v_q, force):
-    """Return the power of the anchors that hold a spring whose force on Q is given [W]."""
-    total = 0.0
-    if p_anchor is not None:
-        return power(force, v_p)
-    if q_anchor is not None:
-        return -power(force, v_q)
-    return total
-
-
-@formula
-def count_anchor_work(works, moving, work, p_anchor, q_anchor, v_p, v_q, force, out):
-    """Add the power of moving anchors, if works are counted."""
-    if works is not None:
-        if moving is not None:
-            out[work + 2] = out[work + 2] + anchor_power(p_anchor, q_anchor, v_p, v_q, force)
-
-
-@formula
-def count_damper_work(works, work, damping, rate, out):
-    """Add the power of a damper, if works are counted."""
-    if works is not None:
-        out[work] = out[work] - damping * rate * rate
+def end_rates(several, bodies, rigid, p, q, s, anchors, moving, u, p_turn, q_turn, y):
+    """Return the velocities of P and Q of spring s along u, a vector of any length."""
+    p_rate = end_rate(several, bodies, rigid, p.anchor, p.particle, p.body, s, anchors, moving, u,
+                      p_turn, y)
+    q_rate = end_rate(several, bodies, rigid, q.anchor, q.particle, q.body, s, anchors, moving, u,
+                      q_turn, y)
+    return p_rate, q_rate
 
 
 @formula
 def spring_motion(several, bodies, rigid, p, q, epsilon, anchors, moving, t, s, y):
-    """Return L, u, both ends' velocities and both arms of spring s of a group."""
-    r_p, v_p, p_arm = end_motion(several, bodies, rigid, p.anchor, p.particle, p.body, p.offset,
-                                 s, anchors, moving, t, y)
-    r_q, v_q, q_arm = end_motion(several, bodies, rigid, q.anchor, q.particle, q.body, q.offset,
-                                 s, anchors, moving, t, y)
-    length, u = length_and_direction(subtract(r_q, r_p), epsilon[s])
-    return length, u, v_p, v_q, p_arm, q_arm
+    """
+    Return what linearly implicit methods need of spring s of a group.
+
+    That is L, u, arm x u at P and at Q (zero at points), and the velocities of P and Q along u. A
+    tension T along u acts on the body at Q with the force T u and the moment T (arm x u).
+    """
+    r, p_arm, q_arm = spring_ends(several, bodies, p, q, anchors, moving, t, s, y)
+    length, u = length_and_direction(r, epsilon[s])
+    p_turn, q_turn = cross(p_arm, u), cross(q_arm, u)
+    p_rate, q_rate = end_rates(several, bodies, rigid, p, q, s, anchors, moving, u, p_turn, q_turn,
+                               y)
+    return length, u, p_turn, q_turn, p_rate, q_rate
 
 
 @formula
-def damper_part(damping, works, work, s, v_p, v_q, u, force, out):
-    """Return a spring's force with its damper's added; count the damper's work."""
-    if damping is not None:
-        rate = length_rate(subtract(v_q, v_p), u)
-        count_damper_work(works, work, damping[s], rate, out)
-        force = add(force, damper_force(damping[s], rate, u))
-    return force
+def pull(several, bodies, rigid, particle, body, s, factor, r, turn, out):
+    """Add the force factor r at an end of spring s, and its moment, to what acts there."""
+    if particle is not None:
+        accumulate_scaled(out, velocity_at(bodies) + 3 * body_of(several, particle, s), factor, r)
+    if body is not None:
+        i = body_of(several, body, s)
+        accumulate_scaled(out, velocity_at(bodies) + 3 * i, factor, r)
+        accumulate_scaled(out, omega_at(bodies, rigid) + 3 * i, factor, turn)
 
 
 @formula
-def apply_springs(several, bodies, rigid, p, q, stiffness, natural_length, epsilon, damping,
-                  anchors, moving, works, t, y, out):
-    """Add forces and moments of one SpringGroup; t: [s] since the anchors were as given."""
-    work = work_at(bodies, rigid)
-    for s in range(stiffness.shape[0]):
-        length, u, v_p, v_q, p_arm, q_arm = spring_motion(
-            several, bodies, rigid, p, q, epsilon, anchors, moving, t, s, y)
-        force = spring_force(stiffness[s], length, natural_length[s], u)
-        force = damper_part(damping, works, work, s, v_p, v_q, u, force, out)
-        apply_at_ends(several, bodies, rigid, p, q, s, p_arm, q_arm, force, out)
-        count_anchor_work(works, moving, work, p.anchor, q.anchor, v_p, v_q, force, out)
+def anchor_speed(p_anchor, q_anchor, p_rate, q_rate):
+    """Return the velocity with which an anchor pulls along the force on Q; 0 without one."""
+    if p_anchor is not None:
+        return p_rate
+    if q_anchor is not None:
+        return -q_rate
+    return 0.0
 
 
 @formula
-def apply_dampers(several, bodies, rigid, p, q, epsilon, damping, anchors, t, y, out):
-    """Add forces and moments of the dampers alone of one SpringGroup."""
-    if damping is not None:
-        for s in range(damping.shape[0]):
-            _, u, v_p, v_q, p_arm, q_arm = spring_motion(
-                several, bodies, rigid, p, q, epsilon, anchors, True, t, s, y)
-            force = damper_force(damping[s], length_rate(subtract(v_q, v_p), u), u)
-            apply_at_ends(several, bodies, rigid, p, q, s, p_arm, q_arm, force, out)
-
-
-@formula
-def count_air_work(works, work, force, velocity, out):
-    """Add the power of the air, if works are counted."""
+def count_anchor_work(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn, q_turn, works,
+                      work, factor, y, out):
+    """Add the power of moving anchors, if works are counted."""
     if works is not None:
-        out[work + 1] = out[work + 1] + power(force, velocity)
+        if moving is not None:
+            p_rate, q_rate = end_rates(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn,
+                                       q_turn, y)
+            out[work + 2] = out[work + 2] + factor * anchor_speed(p.anchor, q.anchor, p_rate,
+                                                                  q_rate)
+
+
+@formula
+def count_damper_work(works, work, damping, rate, inverse_square, out):
+    """Add the power of a damper, -b (dL/dt)^2, if works are counted; rate: L dL/dt [m^2/s]."""
+    if works is not None:
+        out[work] = out[work] - damping * rate * rate * inverse_square
+
+
+@formula
+def with_damper(several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn, q_turn,
+                inverse_square, works, work, factor, y, out):
+    """Return a spring's force over r with its damper's added; count the damper's work."""
+    if damping is not None:
+        p_rate, q_rate = end_rates(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn,
+                                   q_turn, y)
+        rate = q_rate - p_rate
+        count_damper_work(works, work, damping[s], rate, inverse_square, out)
+        factor = fused(damper_tension(damping[s], rate), inverse_square, factor)
+    return factor
+
+
+@formula
+def group_size(connections, stiffness):
+    """Return how many springs a group has; known when compiled where there is only one."""
+    if connections is not None:
+        return stiffness.shape[0]
+    return 1
+
+
+@formula
+def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_length, epsilon,
+                  damping, anchors, moving, works, t, y, out):
+    """
+    Add forces and moments of one SpringGroup; t: [s] since the anchors were as given.
+
+    With r = L u the force on Q is (-k (L - L_n) / L - b (v . r) / L^2) r: most of this does not
+    have to wait for the root and the division.
+    """
+    work = work_at(bodies, rigid)
+    for s in range(group_size(connections, stiffness)):
+        r, p_arm, q_arm = spring_ends(several, bodies, p, q, anchors, moving, t, s, y)
+        length, inverse_square = length_and_inverse_square(r, epsilon[s])
+        p_turn, q_turn = cross(p_arm, r), cross(q_arm, r)
+        factor = spring_tension(stiffness[s], length, natural_length[s]) * (length
+                                                                            * inverse_square)
+        factor = with_damper(several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn,
+                             q_turn, inverse_square, works, work, factor, y, out)
+        pull(several, bodies, rigid, q.particle, q.body, s, factor, r, q_turn, out)
+        pull(several, bodies, rigid, p.particle, p.body, s, -factor, r, p_turn, out)
+        count_anchor_work(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn, q_turn,
+                          works, work, factor, y, out)
+
+
+@formula
+def apply_drag(first, end, drag, air, work, works, y, out):
+    """
+    Add the air's force or torque on every body, and its power, if works are counted.
+
+    first, end: where the (angular) velocities of y lie; air: that of the air, None if it is still.
+    """
+    for i in range(first, end, 3):
+        velocity = at(y, i)
+        relative = relative_velocity(velocity, air)
+        accumulate_scaled(out, i, -drag, relative)
+        count_air_work(works, work, drag, relative, velocity, out)
 
 
 @formula
 def apply_linear_drag(bodies, rigid, linear_drag, air_velocity, works, y, out):
     """Add the air's force on every body."""
-    work = work_at(bodies, rigid)
-    for i in range(velocity_at(bodies), quaternion_at(bodies), 3):
-        velocity = at(y, i)
-        force = air_force(linear_drag, velocity, air_velocity)
-        accumulate(out, i, force)
-        count_air_work(works, work, force, velocity, out)
+    apply_drag(velocity_at(bodies), quaternion_at(bodies), linear_drag, air_velocity,
+               work_at(bodies, rigid), works, y, out)
 
 
 @formula
 def apply_rotational_drag(bodies, rigid, rotational_drag, air_angular_velocity, works, y, out):
     """Add the air's torque on every rigid body."""
     work = work_at(bodies, rigid)
-    for i in range(omega_at(bodies, rigid), work, 3):
-        omega = at(y, i)
-        torque = air_torque(rotational_drag, omega, air_angular_velocity)
-        accumulate(out, i, torque)
-        count_air_work(works, work, torque, omega, out)
+    apply_drag(omega_at(bodies, rigid), work, rotational_drag, air_angular_velocity, work, works,
+               y, out)
+
+
+@formula
+def count_air_work(works, work, drag, relative, velocity, out):
+    """Add the power of the air, if works are counted."""
+    if works is not None:
+        out[work + 1] = out[work + 1] + power(scale(-drag, relative), velocity)

@@ -4,7 +4,7 @@
 
 from .jit import formula
 from .rotation import rotate
-from .vector import add, cross
+from .vector import add, cross, dot
 
 
 @formula
@@ -27,3 +27,14 @@ def attachment_position(position, arm):
 def attachment_velocity(velocity, angular_velocity, arm):
     """Return v + omega x arm, the velocity of Q in world: (3,) [m/s]."""
     return add(velocity, cross(angular_velocity, arm))
+
+
+@formula
+def attachment_rate(velocity, angular_velocity, u, turn):
+    """
+    Return the velocity of an attachment point along u [m/s]: (v + omega x arm) . u.
+
+    velocity: (3,) of the centre of mass [m/s]; angular_velocity: (3,) [rad/s]; u: (3,) unit
+    vector; turn: (3,) arm x u [m]; all in world. (omega x arm) . u is written omega . turn.
+    """
+    return dot(velocity, u) + dot(angular_velocity, turn)

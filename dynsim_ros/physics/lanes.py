@@ -63,7 +63,8 @@ def _spread(builder, number):
     return builder.shuffle_vector(vector, ir.Constant(VECTOR, ir.Undefined), first)
 
 
-def _as_vector(builder, value, numba_type):
+def as_vector(builder, value, numba_type):
+    """Return a value of the type float64 or LANES as the compiler's vector."""
     return value if numba_type == LANES else _spread(builder, value)
 
 
@@ -74,7 +75,7 @@ def _define_operator(function, instruction):
         cases = [signature(LANES, *pair) for pair in pairs]
 
     def lower(context, builder, sig, args):
-        a, b = (_as_vector(builder, *pair) for pair in zip(args, sig.args))
+        a, b = (as_vector(builder, *pair) for pair in zip(args, sig.args))
         return getattr(builder, instruction)(a, b)
 
     infer_global(function)(Template)
@@ -132,7 +133,7 @@ def choose(mask, a, b):
 @intrinsic
 def _vector_choose(typing_context, mask, a, b):
     def generate(context, builder, sig, args):
-        a, b = (_as_vector(builder, *pair) for pair in zip(args[1:], sig.args[1:]))
+        a, b = (as_vector(builder, *pair) for pair in zip(args[1:], sig.args[1:]))
         zero = ir.Constant(VECTOR, [0.0] * COUNT)
         return builder.select(builder.fcmp_unordered('!=', args[0], zero), a, b)
     return LANES(LANES, a, b), generate
@@ -164,8 +165,8 @@ def _total(lanes):
 
 
 def lane(lanes, i):
-    """Return number i of the four."""
-    return lanes[i]
+    """Return number i of the four; a number alone stands for all of them."""
+    return lanes[i] if isinstance(lanes, np.ndarray) else lanes
 
 
 @intrinsic

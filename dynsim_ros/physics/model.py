@@ -49,12 +49,12 @@ class SpringGroup(NamedTuple):
 
 
 class ModelAir(NamedTuple):
-    """Air: None for a drag that is absent, or that acts on no body."""
+    """Air: None for a drag that is absent, or that acts on no body, and for what is still."""
 
     linear_drag: float | None
     rotational_drag: float | None
-    velocity: tuple
-    angular_velocity: tuple
+    velocity: tuple | None
+    angular_velocity: tuple | None
 
 
 class Model(NamedTuple):
@@ -125,7 +125,8 @@ def _air(scene, inertias):
     rotational = (air.rotational_drag or None) if inertias else None
     if linear is None and rotational is None:
         return None
-    return ModelAir(linear, rotational, air.velocity, air.angular_velocity)
+    return ModelAir(linear, rotational, air.velocity if linear and any(air.velocity) else None,
+                    air.angular_velocity if rotational and any(air.angular_velocity) else None)
 
 
 def _spring_groups(scene, springs, bodies):

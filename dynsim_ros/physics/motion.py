@@ -10,8 +10,8 @@ from numba import literal_unroll
 
 from .equations_of_motion import (angular_acceleration, linear_acceleration,
                                   scalar_angular_acceleration)
-from .forces import (apply_dampers, apply_linear_drag, apply_rotational_drag, apply_springs)
-from .jit import formula, kernel
+from .forces import apply_linear_drag, apply_rotational_drag, apply_springs
+from .jit import formula
 from .rotation import quaternion_rate_world, rotation_matrix
 from .state import (counts, moving_size, omega_at, put_quaternion, quaternion, quaternion_at,
                     velocity_at, work_at)
@@ -25,11 +25,12 @@ def matrix_at(matrices, i):
 
 
 @formula
-def apply_all_springs(several, bodies, rigid, springs, anchors, moving, works, t, y, out):
+def apply_all_springs(several, connections, bodies, rigid, springs, anchors, moving, works, t, y,
+                      out):
     """Add forces and moments of all springs with their dampers."""
     if springs is not None:
         for group in literal_unroll(springs):
-            apply_springs(several, bodies, rigid, group.p, group.q, group.stiffness,
+            apply_springs(several, connections, bodies, rigid, group.p, group.q, group.stiffness,
                           group.natural_length, group.epsilon, group.damping, anchors, moving,
                           works, t, y, out)
 
@@ -129,9 +130,10 @@ def apply_forces(model, drive, t, y, out):
         out[i] = -0.0
     apply_pushes(bodies, rigid, drive.pushes, drive.works, y, out)
     apply_gravity(bodies, model.weight, out)
-    apply_all_springs(model.several, bodies, rigid, model.springs, drive.anchors, drive.moving,
-                      drive.works, t, y, out)
     apply_air(bodies, rigid, model.air, drive.works, y, out)
+    # Last, because they take longest to come.
+    apply_all_springs(model.several, model.connections, bodies, rigid, model.springs,
+                      drive.anchors, drive.moving, drive.works, t, y, out)
 
 
 @formula
@@ -163,37 +165,3 @@ def rates(model, drive, t, y, out):
         q = quaternion_at(bodies) + 4 * i
         omega = at(y, omega_at(bodies, rigid) + 3 * i)
         put_quaternion(out, q, quaternion_rate_world(quaternion(y, q), omega))
-
-
-@formula
-def apply_all_dampers(several, bodies, rigid, springs, anchors, t, y, out):
-    """Add forces and moments of all dampers."""
-    if springs is not None:
-        for group in literal_unroll(springs):
-            apply_dampers(several, bodies, rigid, group.p, group.q, group.epsilon, group.damping,
-                          anchors, t, y, out)
-
-
-@formula
-def apply_springs_alone(several, bodies, rigid, springs, anchors, t, y, out):
-    """Add forces and moments of all springs, without their dampers."""
-    if springs is not None:
-        for group in literal_unroll(springs):
-            apply_springs(several, bodies, rigid, group.p, group.q, group.stiffness,
-                          group.natural_length, group.epsilon, None, anchors, True, None, t, y,
-                          out)
-
-
-@kernel
-def wrenches(model, anchors, t, y, out):
-    """
-    Write what each kind of force does to each body; each row of out is laid out as the state.
-
-    anchors: (n, 6) as in Drive; out: (4, state_size), zero on entry; rows: spring, damper, air,
-    gravity.
-    """
-    bodies, rigid = counts(model)
-    apply_springs_alone(model.several, bodies, rigid, model.springs, anchors, t, y, out[0])
-    apply_all_dampers(model.several, bodies, rigid, model.springs, anchors, t, y, out[1])
-    apply_air(bodies, rigid, model.air, None, y, out[2])
-    apply_gravity(bodies, model.weight, out[3])

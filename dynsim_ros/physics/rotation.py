@@ -8,6 +8,7 @@ A quaternion q and the matrix R(q) turn components in body axes into components 
 
 import math
 
+from .fused import fused
 from .jit import formula
 from .lanes import root
 from .vector import cross, dot, norm, scale
@@ -52,9 +53,9 @@ def quaternion_rate(q, omega):
 def quaternion_rate_world(q, omega):
     """Return dq/dt = (0, omega) * q / 2; omega: (3,) angular velocity in WORLD axes [rad/s]."""
     w, x, y, z = q
-    a, b, c = omega
-    return (0.5 * (-x * a - y * b - z * c), 0.5 * (w * a + z * b - y * c),
-            0.5 * (-z * a + w * b + x * c), 0.5 * (y * a - x * b + w * c))
+    a, b, c = scale(0.5, omega)
+    return (fused(-x, a, fused(-y, b, -z * c)), fused(w, a, fused(z, b, -y * c)),
+            fused(w, b, fused(-z, a, x * c)), fused(y, a, fused(-x, b, w * c)))
 
 
 @formula

@@ -12,23 +12,34 @@ from .vector import dot, scale
 
 
 @formula
-def length_and_direction(r, epsilon):
+def length_and_inverse_square(r, epsilon):
     """
-    Return L = |r| [m] and the unit vector u to Q from P.
+    Return L = |r| [m] and 1 / L^2, finite at L = 0: it is 1 / (L^2 + epsilon^2).
 
-    r: (3,) position of Q from P in world [m]; epsilon: [m] keeps u finite (zero) at L = 0: u is
-    r L / (L^2 + epsilon^2). The model's epsilon changes no bit of u unless L is below a millionth
-    of the spring's own lengths. The division need not wait for the root.
+    r: (3,) position of Q from P in world [m]; epsilon [m]: that of the model changes no bit unless
+    L is below a millionth of the spring's own lengths. The division need not wait for the root.
     """
     square = dot(r, r)
-    length = root(square)
-    return length, scale(length * (1.0 / (square + epsilon * epsilon)), r)
+    return root(square), 1.0 / (square + epsilon * epsilon)
+
+
+@formula
+def length_and_direction(r, epsilon):
+    """Return L = |r| [m] and the unit vector u to Q from P, zero at L = 0; arguments as above."""
+    length, inverse_square = length_and_inverse_square(r, epsilon)
+    return length, scale(length * inverse_square, r)
+
+
+@formula
+def spring_tension(stiffness, length, natural_length):
+    """Return -k (L - L_n), along u [N]; stiffness k [N/m], lengths [m]."""
+    return -stiffness * (length - natural_length)
 
 
 @formula
 def spring_force(stiffness, length, natural_length, u):
-    """Return -k (L - L_n) u; stiffness k [N/m], lengths [m], u: (3,) to Q from P."""
-    return scale(-stiffness * (length - natural_length), u)
+    """Return -k (L - L_n) u; arguments as above, u: (3,) to Q from P."""
+    return scale(spring_tension(stiffness, length, natural_length), u)
 
 
 @formula
@@ -38,6 +49,12 @@ def length_rate(v, u):
 
 
 @formula
+def damper_tension(damping, rate):
+    """Return -b dL/dt, along u [N]; damping b [N s/m], rate dL/dt [m/s]."""
+    return -damping * rate
+
+
+@formula
 def damper_force(damping, rate, u):
-    """Return -b dL/dt u; damping b [N s/m], rate dL/dt [m/s], u: (3,) to Q from P."""
-    return scale(-damping * rate, u)
+    """Return -b dL/dt u; arguments as above, u: (3,) to Q from P."""
+    return scale(damper_tension(damping, rate), u)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vectors of three numbers, as tuples: the compiler keeps them in registers."""
 
+from .fused import fused
 from .jit import formula
 from .lanes import root
 
@@ -26,6 +27,14 @@ def accumulate(array, i, a):
     array[i] = array[i] + a[0]
     array[i + 1] = array[i + 1] + a[1]
     array[i + 2] = array[i + 2] + a[2]
+
+
+@formula
+def accumulate_scaled(array, i, s, a):
+    """Add s times the vector a to array[i], array[i + 1], array[i + 2]."""
+    array[i] = fused(s, a[0], array[i])
+    array[i + 1] = fused(s, a[1], array[i + 1])
+    array[i + 2] = fused(s, a[2], array[i + 2])
 
 
 @formula

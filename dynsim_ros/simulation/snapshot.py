@@ -10,8 +10,8 @@ import numpy as np
 from .layout import Layout
 from ..physics.energies import energies
 from ..physics.model import Model
-from ..physics.motion import wrenches
 from ..physics.state import WORKS
+from ..physics.wrenches import wrenches
 from ..scene import Scene
 
 # Rows of the array that the kernel for wrenches fills.

@@ -60,7 +60,8 @@ def test_each_step_ends_where_that_of_scipy_ends(name):
     assert len(taken) > 8
     for t, h, before, after, *_ in taken:
         found, _ = hand(name).step(t, h, before)
-        np.testing.assert_allclose(found, after, rtol=0, atol=3e-14 * abs(after).max())
+        # A rounding of 2 m in a stage of S2 is h k r / I times that in angular velocity: 3e-14.
+        np.testing.assert_allclose(found, after, rtol=0, atol=6e-14 * abs(after).max())
 
 
 @kernel

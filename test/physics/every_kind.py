@@ -12,7 +12,8 @@ import json
 from dynsim_ros.physics.drive import Drive, initial_anchors
 from dynsim_ros.physics.energies import energies
 from dynsim_ros.physics.model import build_model
-from dynsim_ros.physics.motion import rates, wrenches
+from dynsim_ros.physics.motion import rates
+from dynsim_ros.physics.wrenches import wrenches
 from dynsim_ros.scene import parse_scene
 from dynsim_ros.simulation.layout import Layout
 from newton_euler import NewtonEuler, rotation_of

@@ -10,7 +10,8 @@ import sys
 
 from dynsim_ros.integrators import adaptive, METHODS
 from dynsim_ros.physics.energies import energies
-from dynsim_ros.physics.motion import rates, wrenches
+from dynsim_ros.physics.motion import rates
+from dynsim_ros.physics.wrenches import wrenches
 from plain import environment
 import pytest
 from tree import output_of, ROOT

@@ -6,7 +6,7 @@ import json
 
 from dynsim_ros.integrators import METHODS
 from dynsim_ros.physics.energies import energies
-from dynsim_ros.physics.motion import wrenches
+from dynsim_ros.physics.wrenches import wrenches
 from dynsim_ros.scene import Particle, Scene
 from dynsim_ros.simulation import Simulator
 from dynsim_ros.simulation.rehearsal import Rehearsal

@@ -59,7 +59,7 @@ def _is_rounding(model, drive, start, holds, left):
     torque_at = 6 * bodies + 4 * rigid
     if drive.pushes is not None and drive.pushes[torque_at:].any():
         return False
-    if model.air is not None and model.air.rotational_drag and any(model.air.angular_velocity):
+    if model.air is not None and model.air.rotational_drag and model.air.angular_velocity:
         return False
     things = [_Body(tuple(start[3 * i:3 * i + 3].tolist()),
                     tuple(start[6 * bodies + 4 * i:6 * bodies + 4 * i + 4].tolist()))
@@ -78,7 +78,7 @@ def _is_rounding(model, drive, start, holds, left):
 def _add_sizes(model, drive, holds, things):
     drag, wind = 0.0, (0.0, 0.0, 0.0)
     if model.air is not None and model.air.linear_drag is not None:
-        drag, wind = model.air.linear_drag, model.air.velocity
+        drag, wind = model.air.linear_drag, model.air.velocity or (0.0, 0.0, 0.0)
     for i, thing in enumerate(things):
         thing.force_size = drag * norm(tuple(wind))
         for rows in (model.weight, None if drive.pushes is None

@@ -7,6 +7,7 @@ import math
 from .equilibrium import is_equilibrium, moves
 from .hold import holds_of
 from .motion import Balance, ClosedScene
+from .openness import Openness
 from .rotations import all_axes, rotations
 from .translations import flights, SingleBody
 from .works import spin_energy
@@ -24,11 +25,14 @@ class Recogniser:
     def __init__(self, model, drive):
         self._model, self._drive = model, drive
         self._axes = all_axes(model)
+        self._openness = Openness(model, drive)
         self._energies = None
 
     def closed_scene(self, state):
         """Return the ClosedScene of the motion from a state (size,) on, or None."""
         model, drive = self._model, self._drive
+        if self._openness.is_plain(state):
+            return None
         is_still = not moves(model, state)
         if model.springs is not None and model.several is not None and not is_still:
             return None

@@ -65,7 +65,7 @@ def rotations_of(model, drive, start):
     bodies, rigid = len(model.mass), model.rigid
     drag, whirl = 0.0, ZERO
     if model.air is not None and model.air.rotational_drag:
-        drag, whirl = model.air.rotational_drag, tuple(model.air.angular_velocity)
+        drag, whirl = model.air.rotational_drag, model.air.angular_velocity or (0.0, 0.0, 0.0)
     found = []
     for i in range(rigid):
         q, w = 6 * bodies + 4 * i, 6 * bodies + 4 * rigid + 3 * i

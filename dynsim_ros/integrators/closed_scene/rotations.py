@@ -59,7 +59,7 @@ def _slowed(model, found, inertias):
     spins = _spins(found, inertias)
     if spins is None:
         return None
-    return Slowed(*spins, model.air.rotational_drag, tuple(model.air.angular_velocity))
+    return Slowed(*spins, model.air.rotational_drag, model.air.angular_velocity or (0.0, 0.0, 0.0))
 
 
 def _whirls(model, found, inertias):

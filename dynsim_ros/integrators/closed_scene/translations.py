@@ -33,7 +33,7 @@ def drag_and_wind(model):
     """Return the linear drag [N s/m] and the wind (3,) [m/s], (None, None) without drag."""
     if model.air is None or model.air.linear_drag is None:
         return None, None
-    return model.air.linear_drag, tuple(model.air.velocity)
+    return model.air.linear_drag, model.air.velocity or (0.0, 0.0, 0.0)
 
 
 def flights(model, drive):
@@ -63,7 +63,7 @@ class SingleBody:
             self.rotating = [tuple(start[10:13].tolist())]
             if drive.pushes is not None:
                 self.rotating.append(tuple(drive.pushes[10:13].tolist()))
-            if model.air is not None and model.air.rotational_drag:
+            if model.air is not None and model.air.angular_velocity is not None:
                 self.rotating.append(tuple(model.air.angular_velocity))
 
     def centred(self):

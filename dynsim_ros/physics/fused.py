@@ -1,0 +1,68 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+a b + c with a single rounding, of numbers or Lanes: one instruction instead of two.
+
+The compiler never fuses on its own, so that results do not depend on the machine; where it is
+written here it is fused on all of them, and in plain Python too.
+"""
+
+from fractions import Fraction
+import math
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic, overload
+import numpy as np
+
+from .lanes import as_vector, COUNT, FLOAT, LANES, VECTOR
+
+
+def fused(a, b, c):
+    """Return a b + c, rounded once; each a number or Lanes. Other kinds of numbers are exact."""
+    if any(isinstance(x, np.ndarray) for x in (a, b, c)):
+        return np.array([_fused(*map(float, numbers)) for numbers in np.broadcast(a, b, c)])
+    if all(isinstance(x, (float, int)) for x in (a, b, c)):
+        return _fused(float(a), float(b), float(c))
+    return a * b + c
+
+
+def _fused(a, b, c):
+    if not (math.isfinite(a) and math.isfinite(b)):
+        return a * b + c
+    if not math.isfinite(c):
+        return c
+    exact = Fraction(a) * Fraction(b) + Fraction(c)
+    if not exact:
+        # A zero has a sign.
+        return a * b + c
+    try:
+        return float(exact)
+    except OverflowError:
+        return math.inf if exact > 0 else -math.inf
+
+
+@intrinsic
+def _fused_numbers(typing_context, a, b, c):
+    def generate(context, builder, sig, args):
+        return builder.fma(*args)
+    return FLOAT(FLOAT, FLOAT, FLOAT), generate
+
+
+@intrinsic
+def _fused_lanes(typing_context, a, b, c):
+    def generate(context, builder, sig, args):
+        function = builder.module.declare_intrinsic(
+            f'llvm.fma.v{COUNT}f64', fnty=ir.FunctionType(VECTOR, [VECTOR] * 3))
+        return builder.call(function, [as_vector(builder, *pair)
+                                       for pair in zip(args, sig.args)])
+    return LANES(a, b, c), generate
+
+
+@overload(fused)
+def _overload(a, b, c):
+    if LANES in (a, b, c):
+        return lambda a, b, c: _fused_lanes(a, b, c)
+    if all(isinstance(x, types.Float) for x in (a, b, c)):
+        return lambda a, b, c: _fused_numbers(a, b, c)
+    return None
