@@ -7,6 +7,7 @@ Order 1; simple, and poor: energy grows. For comparison and teaching.
 """
 
 from .memory import load, number_row, store
+from ..physics.fused import fused
 from ..physics.jit import formula, kernel
 from ..physics.motion import accelerations
 from ..physics.rotation import quaternion_rate, rotation_matrix
@@ -23,19 +24,19 @@ def turn(bodies, rigid, h, y):
         q = quaternion(y, j)
         omega = at(y, omega_at(bodies, rigid) + 3 * i)
         rate = quaternion_rate(q, transform_back(rotation_matrix(q), omega))
-        put_quaternion(y, j, (q[0] + h * rate[0], q[1] + h * rate[1], q[2] + h * rate[2],
-                              q[3] + h * rate[3]))
+        put_quaternion(y, j, (fused(h, rate[0], q[0]), fused(h, rate[1], q[1]),
+                              fused(h, rate[2], q[2]), fused(h, rate[3], q[3])))
 
 
 @formula
 def translate(bodies, rigid, size, h, a, y):
     """Write positions, velocities, angular velocities and works of step k + 1; all use step k."""
     for i in range(3 * bodies):
-        y[i] = y[i] + h * y[velocity_at(bodies) + i]
+        y[i] = fused(h, y[velocity_at(bodies) + i], y[i])
     for i in range(velocity_at(bodies), quaternion_at(bodies)):
-        y[i] = y[i] + h * a[i]
+        y[i] = fused(h, a[i], y[i])
     for i in range(omega_at(bodies, rigid), size):
-        y[i] = y[i] + h * a[i]
+        y[i] = fused(h, a[i], y[i])
 
 
 @kernel

@@ -3,6 +3,7 @@
 """The classical Runge-Kutta method of order 4, quaternions normalised after every step."""
 
 from .memory import load, number_row, store
+from ..physics.fused import fused
 from ..physics.jit import formula, kernel
 from ..physics.motion import rates
 from ..physics.state import counts, moving_size, normalise
@@ -43,10 +44,10 @@ def advance(model, drive, t_ns, h_ns, steps, state, memory):
             w = weight(stage)
             c = ahead(stage)
             for i in range(size):
-                step[i] = step[i] + w * k[i]
-                at_stage[i] = y[i] + c * h * k[i]
+                step[i] = fused(w, k[i], step[i])
+                at_stage[i] = fused(c * h, k[i], y[i])
         for i in range(size):
-            y[i] = y[i] + h * step[i]
+            y[i] = fused(h, step[i], y[i])
         removed += normalise(bodies, rigid, y)
     store(size, y, state)
     return removed

@@ -7,6 +7,7 @@ Order 1; symplectic where forces depend on positions alone, so that energy error
 """
 
 from .memory import load, number_row, store
+from ..physics.fused import fused
 from ..physics.jit import formula, kernel
 from ..physics.motion import accelerations
 from ..physics.rotation import axis_angle_quaternion, quaternion_product
@@ -38,11 +39,11 @@ def advance(model, drive, t_ns, h_ns, steps, state, memory):
     for k in range(steps):
         accelerations(model, drive, (t_ns + k * h_ns) * 1e-9, y, a)
         for i in range(velocity_at(bodies), quaternion_at(bodies)):
-            y[i] = y[i] + h * a[i]
+            y[i] = fused(h, a[i], y[i])
         for i in range(omega_at(bodies, rigid), size):
-            y[i] = y[i] + h * a[i]
+            y[i] = fused(h, a[i], y[i])
         for i in range(3 * bodies):
-            y[i] = y[i] + h * y[velocity_at(bodies) + i]
+            y[i] = fused(h, y[velocity_at(bodies) + i], y[i])
         turn(bodies, rigid, h, y)
         removed += normalise(bodies, rigid, y)
     store(size, y, state)
