@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A simulation node in a process of its own."""
 
+import re
 import signal
 import subprocess
 import sys
@@ -24,6 +25,11 @@ def start_refused(folder, *ros_args):
     (line,) = done.stderr.splitlines()
     assert line.startswith('error: '), line
     return line
+
+
+def age(path):
+    """Return what sorts bags by the time in their names, and the number behind that."""
+    return [int(number) for number in re.findall(r'\d+', path.stem)]
 
 
 class LiveNode:
@@ -51,7 +57,7 @@ class LiveNode:
     @property
     def bags(self):
         """Return the paths of the bags in the default folder, oldest first."""
-        return sorted(self.folder.glob('runs/*.mcap'), key=lambda path: path.stat().st_mtime_ns)
+        return sorted(self.folder.glob('runs/*.mcap'), key=age)
 
     def check(self):
         """Raise AssertionError if the process has ended with an error."""

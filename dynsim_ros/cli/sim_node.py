@@ -40,7 +40,7 @@ examples:
 def main(args=None) -> int:
     """Run the node; return 0, also when stopped by a signal, or 2 with an error on stderr."""
     signals = Signals()
-    # The recorder's thread gives the interpreter back sooner, so that ticks are less late.
+    # Other threads give the interpreter back sooner, so that ticks are less late.
     sys.setswitchinterval(0.0005)
     try:
         own, ros_args = split(sys.argv[1:] if args is None else args)
@@ -102,14 +102,16 @@ def _leave():
 
 
 def _spin_until_end(node, spin_some, signals, line):
-    while not (signals.requested or node.run.finished):
+    while not (signals.requested or node.run.finished or node.ticker.error):
         spin_some(0.1)
         if line.is_due():
-            line.show(_status(node))
+            line.show(node.ticker.mailbox.ask(lambda: _status(node)))
+    if node.ticker.error:
+        raise node.ticker.error
 
 
 def _status(node) -> str:
-    """Return the state of a run in one line."""
+    """Return the state of a run in one line; within the run's thread."""
     simulator, bag = node.run.simulator, node.run.bag
     snapshot = simulator.snapshot()
     body = snapshot.layout.bodies[0]

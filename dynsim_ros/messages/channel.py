@@ -29,9 +29,13 @@ class Channel:
     qos: Qos = STATE
     interval_ns: int = 0
 
+    def every(self, tick_ns: int) -> int:
+        """Return how many ticks of a length [ns] it is from one message to the next."""
+        return max(-(-self.interval_ns // tick_ns), 1)
+
     def is_due(self, tick: int, tick_ns: int) -> bool:
         """Tell whether a tick is one at which this channel has a message."""
-        return self.interval_ns <= tick_ns or tick % -(-self.interval_ns // tick_ns) == 0
+        return tick % self.every(tick_ns) == 0
 
 
 def stamp(stamp_ns: int) -> tuple[int, int]:

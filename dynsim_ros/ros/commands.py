@@ -14,6 +14,7 @@ from ..messages.commands import anchor_topic, PARAMETER_TOPIC, push_topic
 from ..messages.qos import COMMAND
 from ..scene import SceneError
 from ..simulation import CommandError, MoveAnchor, PushBody
+from ..simulation.commands import checked
 
 # At most one warning about refused commands in so many seconds.
 _THROTTLE = 1.0
@@ -21,15 +22,16 @@ _THROTTLE = 1.0
 
 class Commands:
     """
-    Subscribes to the command topics of a scene and hands what is valid to the run.
+    Subscribes to the command topics of a scene and tells what is valid to the run's mailbox.
 
     A refused command leaves the state as it is; it is counted in run.refused, and a warning
     (throttled) says what is wrong with it.
     """
 
-    def __init__(self, node, run):
+    def __init__(self, node, run, mailbox):
         self._node = node
         self._run = run
+        self._mailbox = mailbox
         scene = run.simulator.scene
         for anchor in scene.anchors:
             self._subscribe(PointStamped, anchor_topic(anchor.name),
@@ -54,12 +56,17 @@ class Commands:
 
     def _move(self, anchor, message):
         _check_frame(message.header)
-        self._run.command(MoveAnchor(anchor, _numbers(message.point)))
+        self._tell(MoveAnchor(anchor, _numbers(message.point)))
 
     def _push(self, body, message):
         _check_frame(message.header)
-        self._run.command(PushBody(body, _numbers(message.wrench.force),
-                                   _numbers(message.wrench.torque)))
+        self._tell(PushBody(body, _numbers(message.wrench.force),
+                            _numbers(message.wrench.torque)))
+
+    def _tell(self, command):
+        """Have a command carried out if it is valid: which names there are never changes."""
+        command = checked(command, self._run.simulator.scene)
+        self._mailbox.tell(lambda: self._run.command(command))
 
     def _set(self, message):
         try:

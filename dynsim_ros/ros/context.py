@@ -7,14 +7,10 @@ from contextlib import contextmanager
 import os
 
 import rclpy
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-try:
-    from rclpy.experimental.events_executor import EventsExecutor
-except ImportError:
-    EventsExecutor = None
+from .executor import new_executor
 
 # Beyond it the UDP ports of a domain do not exist.
 _LAST_DOMAIN = 232
@@ -52,14 +48,8 @@ def _check_domain(text: str):
 
 @contextmanager
 def spinning(node: Node) -> Iterator[Callable[[float], None]]:
-    """
-    Give a function that serves a node's callbacks for at most so many seconds, then returns.
-
-    With rclpy's EventsExecutor a tick costs half of what it costs with SingleThreadedExecutor;
-    its own spin() is not used: it was seen to run at full load and fire no timer.
-    """
-    executor = SingleThreadedExecutor() if EventsExecutor is None else EventsExecutor()
-    executor.add_node(node)
+    """Give a function that serves a node's callbacks for at most so many seconds, then returns."""
+    executor = new_executor(node)
 
     def serve(seconds):
         try:

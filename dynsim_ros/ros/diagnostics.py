@@ -16,12 +16,14 @@ _OK, _WARN, _ERROR = 0, 1, 2
 class Diagnostics:
     """Publishes a DiagnosticArray; real_time_factor and rate are those since the last one."""
 
-    def __init__(self, node, run, pacer):
+    def __init__(self, node, run, pacer, audience):
         self._run = run
         self._pacer = pacer
         self._name = node.get_name()
-        self._publisher = node.create_publisher(
-            message_class(DIAGNOSTICS.type_name), DIAGNOSTICS.topic, profile(DIAGNOSTICS.qos))
+        self._audience = audience
+        self._publisher = audience.of(lambda events: node.create_publisher(
+            message_class(DIAGNOSTICS.type_name), DIAGNOSTICS.topic, profile(DIAGNOSTICS.qos),
+            event_callbacks=events))
         # Not known yet.
         self.real_time_factor = self.rate = None
         self.begin()
@@ -42,12 +44,16 @@ class Diagnostics:
             self.begin()
 
     def publish(self):
-        """Publish and record one array."""
+        """Publish and record one array, if anybody listens or it is recorded."""
         self.measure()
+        is_heard = self._audience.hears(self._publisher)
+        if not is_heard and self._run.bag is None:
+            return
         statuses = [self._run_status(), self._energy_status(), self._recorder_status()]
         data = encode(DIAGNOSTICS.type_name,
                       {'header': header(self._run.stamp_ns), 'status': statuses})
-        self._publisher.publish(data)
+        if is_heard:
+            self._publisher.publish(data)
         self._run.record({DIAGNOSTICS.topic: data})
 
     def _run_status(self):

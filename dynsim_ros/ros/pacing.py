@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How many ticks of simulated time are due, by a clock that may be late."""
 
-from itertools import count
 import math
 import time
 
@@ -11,21 +10,19 @@ SECOND = 1_000_000_000
 LONGEST_LAG = SECOND // 5
 # The same where the clock is another's: that may tick slowly, but what it says has passed.
 LONGEST_STRIDE = 10 * SECOND
-# A timer is asked at least so often.
+# A run that nobody waits for comes up to date at least so often.
 LONGEST_PERIOD = SECOND
-# A timer is never asked for more calls a second than this; it then runs several ticks a call.
-SHORTEST_PERIOD = SECOND // 2000
-# How long ticks may run before commands get their turn.
-BATCH = SECOND // 200
+# Real seconds that fit into the longest run: keeps a tiny real-time factor from overflowing.
+_LONGEST = 10 ** 18
 
 
 class Pacer:
     """
-    Ties simulated time to a clock.
+    Ties simulated time to a clock: each tick has an absolute deadline.
 
     factor: simulated seconds per second of the clock, 0 for as fast as possible; now: function
     that returns the clock's time [ns]; longest_lag: what is made up for at most [ns of the
-    clock]. missed: ticks given up; late: ticks made up for.
+    clock]. missed: ticks given up; late: ticks that were run when the next one was already due.
     """
 
     def __init__(self, factor, now=time.monotonic_ns):
@@ -40,45 +37,40 @@ class Pacer:
         """Let the simulated time time_ns be now."""
         self._clock_start = self.now()
         self._time_start = time_ns
+        self.is_up_to_date()
 
-    def period(self, tick_ns):
-        """Return how often to ask what is due [ns of the clock]."""
-        if self.factor == 0.0:
-            return SHORTEST_PERIOD
-        return round(min(max(tick_ns / self.factor, SHORTEST_PERIOD), LONGEST_PERIOD))
+    def is_up_to_date(self):
+        """Take note that all ticks that were due have been run."""
+        self._latest = self.now() + LONGEST_PERIOD
 
-    def time_left(self, time_ns, tick_ns):
-        """Return how long it is until the tick after time_ns is due [s], a period at most."""
-        left = 0.0
-        if self.factor > 0.0:
-            elapsed = self.now() - self._clock_start
-            left = (time_ns + tick_ns - self._time_start) / self.factor - elapsed
-        return min(max(left, 0.0), self.period(tick_ns)) / SECOND
+    def ticks_until(self, instant, time_ns, tick_ns):
+        """Return how many ticks after simulated time time_ns are due by an instant [ns]."""
+        passed = self._time_start + int((instant - self._clock_start) * self.factor)
+        return max((passed - time_ns) // tick_ns, 0)
 
-    def ticks_due(self, time_ns, tick_ns):
+    def deadline(self, time_ns):
+        """Return the time of the clock at which a simulated time is due, at factors above 0."""
+        real = min((time_ns - self._time_start) / self.factor, _LONGEST)
+        return self._clock_start + math.ceil(real)
+
+    def due(self, time_ns, tick_ns, wanted):
         """
-        Yield once for each tick that is due at simulated time time_ns, for at most BATCH.
+        Return (number of ticks to run now, how long there is nothing to do [ns of the clock]).
 
-        The caller advances time by tick_ns each time round. What there is no time for stays due.
+        wanted: how many ticks it is from time_ns to one that somebody waits for; those before it
+        are not run on their own. What is late beyond longest_lag is given up.
         """
-        end = time.monotonic_ns() + BATCH
-        due, usual = self._count_due(time_ns, tick_ns)
-        for number in count() if self.factor == 0.0 else range(due):
-            self.late += number >= usual
-            yield
-            if time.monotonic_ns() >= end:
-                return
-
-    def _count_due(self, time_ns, tick_ns):
-        """Return how many ticks are due, and how many are when the clock is asked in time."""
         if self.factor == 0.0:
-            return math.inf, math.inf
-        elapsed = self.now() - self._clock_start
-        due = int(self._time_start + elapsed * self.factor - time_ns) // tick_ns
-        usual = max(round(self.period(tick_ns) * self.factor / tick_ns), 1)
-        most = max(int(self.longest_lag * self.factor) // tick_ns, usual)
-        if due > most:
-            self.missed += due - most
-            self._time_start -= (due - most) * tick_ns
-            due = most
-        return due, usual
+            return wanted, 0
+        now = self.now()
+        deadline = min(self.deadline(time_ns + wanted * tick_ns), self._latest)
+        if now < deadline:
+            return 0, deadline - now
+        excess = int((now - deadline - self.longest_lag) * self.factor) // tick_ns
+        if excess > 0:
+            self.missed += excess
+            self._time_start -= excess * tick_ns
+        due = self.ticks_until(now, time_ns, tick_ns)
+        if due == 0:
+            self.is_up_to_date()
+        return due, 0

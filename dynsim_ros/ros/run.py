@@ -8,12 +8,14 @@ from ..messages.qos import STATE
 from ..scene import SceneError
 from ..simulation import DivergenceError, SetValues, Simulator
 
+# More ticks than any run has.
+_FAR = 2 ** 62
 DIAGNOSTICS = Channel('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', None, STATE)
 
 
 class Run:
     """
-    What the node's timer, subscriptions and services act on; all of them in one thread.
+    What ticks, and what subscriptions and services act on; all in one thread, the Ticker's.
 
     simulator; topics: Topics; clock: ClockPublisher; options: dict of the node's own parameters,
     always up to date; node: the node, for its names and its log; origin_ns: added to simulated
@@ -35,6 +37,7 @@ class Run:
         self._log = node.get_logger()
         self._bag_error = None
         self._unrecorded = []
+        self._detached = []
 
     @property
     def stamp_ns(self):
@@ -47,15 +50,44 @@ class Run:
         duration = self._options['duration']
         return duration > 0.0 and self.simulator.time_ns >= round(duration * 1e9)
 
-    def tick(self):
-        """Advance by one tick and publish; if the motion diverges, pause and say why."""
+    def ticks_to_wanted(self):
+        """Return how many ticks it is to the next one that somebody waits for, 1 at least."""
+        simulator, tick_ns = self.simulator, self.simulator.settings.tick_ns
+        if self._options['publish_clock'] and self._clock.is_heard:
+            return 1
+        ticks = self.topics.schedule(tick_ns, self.bag is not None).ticks_to_wanted(simulator.tick)
+        if ticks == 1:
+            return 1
+        duration = self._options['duration']
+        to_end = -((simulator.time_ns - round(duration * 1e9)) // tick_ns) if duration else _FAR
+        return max(min(_FAR if ticks is None else ticks, to_end), 1)
+
+    def advance(self, ticks, is_wanted):
+        """
+        Advance by some ticks; publish the last one if it is wanted.
+
+        If the motion diverges, pause at the last state and say why.
+        """
+        simulator = self.simulator
+        before, tick_ns = simulator.tick, simulator.settings.tick_ns
         try:
-            self.simulator.advance_tick()
+            if ticks == 1:
+                simulator.advance_tick()
+            else:
+                simulator.advance_ticks(ticks)
         except DivergenceError as error:
             self.paused = True
             self._log.error(f'paused: {error}; then call ~/reset')
-            return
-        self.publish()
+            is_wanted = False
+        passed = simulator.tick - is_wanted
+        if passed > before:
+            self.topics.pass_over(before, passed, tick_ns)
+        if is_wanted:
+            self.publish()
+
+    def step(self):
+        """Advance by one tick and publish it."""
+        self.advance(1, True)
 
     def publish(self):
         """Publish and record the present instant."""
@@ -113,9 +145,8 @@ class Run:
 
         Returns why the new one could not be made, in one line, or None.
         """
-        was_recording = self.bag is not None
         self._unrecorded.clear()
-        self.stop_recording()
+        was_recording = self.detach_bag()
         self.simulator.reset()
         if was_recording:
             try:
@@ -152,16 +183,29 @@ class Run:
                 if not path.exists():
                     raise
 
-    def stop_recording(self):
-        """End the bag; log and return what it holds, in words, None if there was none."""
+    def detach_bag(self):
+        """End the recording, of which finish_bags does the rest; return whether there was one."""
         if self.bag is None:
-            return None
-        bag, self.bag = self.bag, None
-        bag.close()
-        recorder = bag.recorder
-        lost = f', {recorder.lost} lost: {recorder.error or "the disk was too slow"}'
-        text = f'{recorder.messages} messages in {bag.path}' + (lost if recorder.lost else '')
-        self._log.info(f'recorded {text}')
+            return False
+        self._report_bag_error()
+        self._detached.append(self.bag)
+        self.bag = None
+        return True
+
+    def finish_bags(self):
+        """
+        Finish the files of recordings that have ended, which takes its time; from any one thread.
+
+        Logs what each holds, and returns it of the last one; None if there was none.
+        """
+        text = None
+        while self._detached:
+            bag = self._detached.pop(0)
+            bag.close()
+            recorder = bag.recorder
+            lost = f', {recorder.lost} lost: {recorder.error or "the disk was too slow"}'
+            text = f'{recorder.messages} messages in {bag.path}' + (lost if recorder.lost else '')
+            self._log.info(f'recorded {text}')
         return text
 
     def _report_bag_error(self):

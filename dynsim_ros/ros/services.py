@@ -11,24 +11,36 @@ class Services:
     """
     Offers ~/pause, ~/step, ~/reset and ~/record.
 
-    resumed, was_reset: called, without arguments, after the run went on or was reset.
+    ask: Mailbox.ask, through which all but the end of a bag is done; resumed, was_reset: called,
+    without arguments, there, after the run went on or was reset; follow_up: after a reset, here.
     """
 
-    def __init__(self, node, run, resumed, was_reset):
+    def __init__(self, node, run, ask, *, resumed, was_reset, follow_up):
         self._run = run
+        self._ask = ask
         self._resumed = resumed
         self._was_reset = was_reset
-        for name, kind, answer in (('pause', SetBool, self._pause), ('step', Trigger, self._step),
+        self._follow_up = follow_up
+        for name, kind, answer in (('pause', SetBool, self._in_time(self._pause)),
+                                   ('step', Trigger, self._in_time(self._step)),
                                    ('reset', Trigger, self._reset),
                                    ('record', SetBool, self._record)):
             def callback(request, response, answer=answer):
-                failure = run.simulator.failure
                 response.success, response.message = answer(request)
-                if failure is not None and failure not in response.message:
-                    response.message += f' (the run had stopped: {failure})'
                 return response
 
             node.create_service(kind, f'~/{name}', callback)
+
+    def _in_time(self, answer):
+        """Return a function that has answer(request) given at a tick boundary."""
+        def answer_there(request):
+            failure = self._run.simulator.failure
+            success, message = answer(request)
+            if failure is not None and failure not in message:
+                message += f' (the run had stopped: {failure})'
+            return success, message
+
+        return lambda request: self._ask(lambda: answer_there(request))
 
     def _now(self):
         simulator = self._run.simulator
@@ -50,12 +62,17 @@ class Services:
         if not self._run.paused:
             return False, 'not paused: call ~/pause with data true first'
         if self._run.simulator.failure is None:
-            self._run.tick()
+            self._run.step()
         if self._run.simulator.failure is not None:
             return False, self._failure()
         return True, self._now()
 
-    def _reset(self, _):
+    def _reset(self, request):
+        answer = self._in_time(self._begin_anew)(request)
+        self._follow_up()
+        return answer
+
+    def _begin_anew(self, _):
         failed = self._run.simulator.failure is not None
         problem = self._run.reset()
         if failed:
@@ -65,12 +82,18 @@ class Services:
         return True, f'{text}; no longer recording: {problem}' if problem else text
 
     def _record(self, request):
-        if request.data:
-            try:
-                path = self._run.start_recording()
-            except SceneError as error:
-                return False, str(error)
-            self._run.publish()
-            return True, str(path)
-        text = self._run.stop_recording()
-        return text is not None, text or 'not recording'
+        answer = self._in_time(self._begin_bag if request.data else self._end_bag)(request)
+        if request.data or not answer[0]:
+            return answer
+        return True, self._run.finish_bags() + answer[1]
+
+    def _begin_bag(self, _):
+        try:
+            path = self._run.start_recording()
+        except SceneError as error:
+            return False, str(error)
+        self._run.publish()
+        return True, str(path)
+
+    def _end_bag(self, _):
+        return (True, '') if self._run.detach_bag() else (False, 'not recording')

@@ -6,22 +6,28 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
+from .audience import Audience
 from .clock import ClockPublisher
 from .commands import Commands
 from .compiling import Compiling
 from .context import one_line
 from .diagnostics import Diagnostics
+from .followed_clock import FollowedClock
 from .message_types import message_class
-from .pacing import LONGEST_STRIDE, Pacer
+from .pacing import Pacer
 from .parameters import Parameters, refused
 from .qos import profile
 from .run import Run
 from .services import Services
+from .ticker import Ticker
 from .topics import Topics
 from ..messages.epoch import EPOCH
 from ..messages.scene_channels import scene_channels
 from ..scene import SceneError
 from ..simulation import Simulator
+
+# How often to see who listens, where the middleware does not tell of changes [s].
+_LOOK = 0.05
 
 
 class SimNode(Node):
@@ -29,8 +35,9 @@ class SimNode(Node):
     Simulates a scene in real time.
 
     is_ending: function that tells whether the program was asked to end. Raises SceneError if a
-    parameter given at the start is wrong. All callbacks run in one thread; they find the simulator
-    at a tick boundary, and what they change holds from there on.
+    parameter given at the start is wrong. The run ticks in the thread of a Ticker; callbacks are
+    served by another thread, and what they want of the run goes through the ticker's mailbox:
+    it is done at a tick boundary, and what it changes holds from there on.
     """
 
     def __init__(self, name='dynsim', is_ending=lambda: False):
@@ -43,51 +50,66 @@ class SimNode(Node):
         self.parameters = Parameters(self)
         simulator = Simulator(self.parameters.scene, self.parameters.settings)
         simulator.prepare()
+        self.audience = Audience(lambda: self.ticker.mailbox.wake())
+        self._clock_publisher = ClockPublisher(self, self.audience)
+        self.pacer = Pacer(self.parameters.own['real_time_factor'])
         try:
-            topics = Topics(self, scene_channels(simulator.scene, simulator.layout))
-            self.run = Run(simulator, topics, ClockPublisher(self), self.parameters.own, self)
-            self.commands = Commands(self, self.run)
+            self._tie(simulator)
         except (AssertionError, RuntimeError, TypeError) as error:
             # What rclpy raises for a quality of service that it was told by a parameter.
             raise SceneError(f'a qos_overrides parameter is wrong: '
                              f'{one_line(error) or "its type"}') from None
         self.parameters.check_qos_overrides()
-        self._follows_clock = self.get_parameter('use_sim_time').value
-        self._check_clock({})
-        self.run_services = Services(self, self.run, self._resume, self._was_reset)
-        self.pacer = Pacer(self.parameters.own['real_time_factor'])
-        if self._follows_clock:
-            self.pacer.now, self.pacer.longest_lag = self._ros_now, LONGEST_STRIDE
-        self.compiling = Compiling(self.run, self.get_logger(),
+        self._followed = None
+        follows = self.get_parameter('use_sim_time').value
+        self._check_clock({'use_sim_time': follows}, follows)
+        if follows:
+            self._followed = FollowedClock(self.get_clock(), self.run, self.pacer,
+                                           self.ticker.mailbox.wake, self._was_set_back)
+        Services(self, self.run, self.ticker.mailbox.ask, resumed=self._resume,
+                 was_reset=self._was_reset, follow_up=self._follow_up)
+        self.compiling = Compiling(simulator, self.get_logger(),
                                    lambda: is_ending() or self.run.finished)
-        self.diagnostics = Diagnostics(self, self.run, self.pacer)
+        self.diagnostics = Diagnostics(self, self.run, self.pacer, self.audience)
         self._epoch_publisher = self.create_publisher(
             message_class(EPOCH.type_name), f'~/{EPOCH.topic}', profile(EPOCH.qos))
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._timer = None
-        self._clock_seen = 0
+        self._own_timers = []
         self._restoring = False
         self.add_post_set_parameters_callback(self._parameters_were_set)
-        self.run.waiting = self._follows_clock
+
+    def _tie(self, simulator):
+        """Make what publishes the run, what it ticks in and what commands it."""
+        topics = Topics(self, scene_channels(simulator.scene, simulator.layout), self.audience)
+        self.run = Run(simulator, topics, self._clock_publisher, self.parameters.own, self)
+        self.ticker = Ticker(self.run, self.pacer,
+                             lambda: self._followed is None or self._followed.is_good())
+        self.commands = Commands(self, self.run, self.ticker.mailbox)
 
     def begin(self):
         """
-        Publish the initial state, start recording if wanted, and the timers.
+        Publish the initial state, start recording if wanted, and let the run tick.
 
         Raises SceneError if a bag cannot be made.
         """
+        if self.parameters.own['publish_clock']:
+            self._clock_publisher.begin()
         if self.parameters.own['record.enable']:
             self.run.start_recording()
         self._begin_epoch()
-        self._schedule()
-        self._diagnostics_timer = self.create_timer(1.0, self._publish_diagnostics,
-                                                    clock=self._steady)
+        self.diagnostics.begin()
+        self.ticker.begin()
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._own_timers.append(self.create_timer(1.0, self._every_second, clock=steady))
+        if not self.audience.is_told:
+            self._own_timers.append(self.create_timer(_LOOK, self.audience.look, clock=steady))
 
     def end(self):
         """Stop ticking and finish the bag; return whether all threads have ended."""
-        self.run.stop_recording()
-        if self._timer is not None:
-            self._timer.cancel()
+        self.ticker.end()
+        self.run.detach_bag()
+        self.run.finish_bags()
+        for timer in self._own_timers:
+            timer.cancel()
         return self.compiling.give_up()
 
     def set_parameters_atomically(self, parameter_list):
@@ -97,16 +119,23 @@ class SimNode(Node):
         parameters = [self.parameters.converted(parameter) for parameter in parameter_list]
         try:
             parameters = self.parameters.checked(parameters, self.run.simulator)
-            self._check_clock({parameter.name: parameter.value for parameter in parameters})
-            self.compiling.prepare(self.parameters.run_values(parameters), self._go_on)
+            self._check_clock({parameter.name: parameter.value for parameter in parameters},
+                              self._followed is not None)
+            values = self.parameters.run_values(parameters)
+            if values:
+                # Others are told who listens meanwhile: commands have to wait, subscribers not.
+                self.compiling.prepare(self._copy(), values, self.audience.look)
         except SceneError as error:
             return refused(str(error))
         return super().set_parameters_atomically(parameters)
 
-    def _check_clock(self, values):
+    def _copy(self):
+        """Return a Simulator that stands where the one that runs does."""
+        return self.ticker.mailbox.ask(self.run.simulator.copy)
+
+    def _check_clock(self, values, follows):
         """Raise SceneError if new values of parameters do not go with the clock."""
-        follows = values.get('use_sim_time', self._follows_clock)
-        if follows != self._follows_clock:
+        if values.get('use_sim_time', follows) != follows:
             raise SceneError('use_sim_time: the clock of a run cannot be changed; give it at the '
                              'start')
         own = {**self.parameters.own, **values}
@@ -120,89 +149,58 @@ class SimNode(Node):
     def _parameters_were_set(self, parameters):
         if self._restoring:
             return
+        if any(parameter.name == 'publish_clock' and parameter.value for parameter in parameters):
+            self._clock_publisher.begin()
+        self.ticker.mailbox.ask(lambda: self._change(parameters))
+
+    def _change(self, parameters):
+        """Let the run have new values of parameters, from the present instant on."""
         self.parameters.accept(parameters)
         self.run.set_values(self.parameters.run_values(parameters))
         names = {parameter.name for parameter in parameters}
         self.run.record_settings({name: self.parameters.own[name]
                                   for name in names if name in self.parameters.own})
         if names & {'rate', 'real_time_factor'}:
-            self._schedule()
+            self._pace()
 
-    def _schedule(self):
-        """Set the timer to the rate, and let simulated time go on from now."""
+    def _pace(self):
+        """Let simulated time go on from now, at the factor that is set."""
         self.pacer.factor = self.parameters.own['real_time_factor']
         self.pacer.restart(self.run.simulator.time_ns)
-        before = self._timer
-        period = self.pacer.period(self.run.simulator.settings.tick_ns) / 1e9
-        self._timer = self.create_timer(period, self._advance, clock=self._steady)
-        if before is not None:
-            self.destroy_timer(before)
-
-    def _ros_now(self):
-        return self.get_clock().now().nanoseconds
-
-    def _advance(self):
-        """Run the ticks that are due."""
-        run = self.run
-        if run.paused or run.finished or (self._follows_clock and not self._clock_is_good()):
-            return
-        simulator = run.simulator
-        for _ in self.pacer.ticks_due(simulator.time_ns, simulator.settings.tick_ns):
-            run.tick()
-            if run.paused or run.finished:
-                return
-
-    def _go_on(self):
-        """Run the ticks that are due; return how long there is nothing to do [s]."""
-        run, tick_ns = self.run, self.run.simulator.settings.tick_ns
-        self._advance()
-        if run.paused or run.finished or run.waiting:
-            return self.pacer.period(tick_ns) / 1e9
-        return self.pacer.time_left(run.simulator.time_ns, tick_ns)
-
-    def _clock_is_good(self):
-        """Tell whether /clock has begun; if it was set back, begin a new epoch."""
-        last, self._clock_seen = self._clock_seen, self._ros_now()
-        if self._clock_seen == 0:
-            return False
-        if last == 0:
-            self._follow()
-        elif self._clock_seen < last:
-            self.get_logger().warning('/clock was set back: reset')
-            self.run.reset()
-            self._was_reset()
-        return True
-
-    def _follow(self):
-        """Go on with /clock from where it is now; a run that waited for it begins there."""
-        time_ns = self.run.simulator.time_ns
-        self.pacer.restart(time_ns)
-        if self.run.waiting:
-            self.run.begin(self._clock_seen - time_ns)
 
     def _resume(self):
         self.pacer.restart(self.run.simulator.time_ns)
         self.diagnostics.begin()
 
+    def _was_set_back(self):
+        self.get_logger().warning('/clock was set back: reset')
+        self._was_reset()
+        # In the thread that serves callbacks, as soon as it can.
+        self.executor.create_task(self._follow_up)
+
     def _was_reset(self):
-        """Bring parameters and timer to the initial scene, and announce the epoch."""
-        if self._follows_clock:
-            self.run.origin_ns = self._clock_seen = self._ros_now()
-            self.run.waiting = self.run.origin_ns == 0
+        """Begin a new epoch, in the run's thread."""
+        if self._followed is not None:
+            self._followed.was_reset()
+        self.diagnostics.begin()
+        self._pace()
+        self._begin_epoch()
+
+    def _follow_up(self):
+        """Bring the parameters to the initial scene and finish the last epoch's bag."""
         self._restoring = True
         try:
             self.set_parameters_atomically(self.parameters.restored(self.run.simulator))
         finally:
             self._restoring = False
         self.compiling.was_changed()
-        self.diagnostics.begin()
-        self._schedule()
-        self._begin_epoch()
+        self.run.finish_bags()
 
     def _begin_epoch(self):
         self._epoch_publisher.publish(EPOCH.encode(self.run.simulator.snapshot(), None))
         self.run.publish()
 
-    def _publish_diagnostics(self):
-        self.diagnostics.publish()
-        self.compiling.prepare_ahead()
+    def _every_second(self):
+        self.audience.look()
+        self.ticker.mailbox.ask(self.diagnostics.publish)
+        self.compiling.prepare_ahead(self._copy)

@@ -4,44 +4,64 @@
 
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from .audience import Audience
 from .message_types import message_class
 from .qos import profile
+from .schedule import Schedule
 
 
 class Topics:
     """
     Publishes the messages of a list of Channels, as the bytes that are also recorded.
 
-    Topics are relative to the node (~/). skipped: messages that were due but not built.
+    Topics are relative to the node (~/). audience: Audience of these and other publishers.
+    skipped: messages that were due but not built; built: those that were.
     """
 
-    def __init__(self, node, channels):
+    def __init__(self, node, channels, audience: Audience):
         self.channels = channels
-        self.skipped = 0
+        self.skipped = self.built = 0
         self._node = node
-        self._publishers = [(channel, self._publisher(node, channel)) for channel in channels]
+        self._audience = audience
+        self._publishers = [self._publisher(channel) for channel in channels]
+        self._schedule = None
 
     def resolve(self, topic):
         """Return the full name that a topic has here, remapped if it is."""
         return self._node.resolve_topic_name(topic if topic[0] == '/' else f'~/{topic}')
 
-    def _publisher(self, node, channel):
-        return node.create_publisher(
+    def _publisher(self, channel):
+        return self._audience.of(lambda events: self._node.create_publisher(
             message_class(channel.type_name), f'~/{channel.topic}', profile(channel.qos),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies())
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=events))
+
+    def schedule(self, tick_ns, recording):
+        """Return the Schedule for ticks of a length [ns]."""
+        version = self._audience.version
+        schedule = self._schedule
+        if schedule is None or schedule.made_for != (version, tick_ns, recording):
+            heard = [self._audience.hears(publisher) for publisher in self._publishers]
+            schedule = self._schedule = Schedule(
+                self.channels, self._publishers, heard, tick_ns, recording,
+                (version, tick_ns, recording))
+        return schedule
+
+    def pass_over(self, first, last, tick_ns):
+        """Count what was due at the ticks first + 1 to last, at which nobody wanted anything."""
+        self.skipped += self.schedule(tick_ns, False).due_between(first, last)
 
     def publish(self, snapshot, stamp_ns, tick_ns, recording):
         """Publish what is due at a tick; return {topic: CDR bytes} of what was built."""
-        built = {}
-        for channel, publisher in self._publishers:
-            if not channel.is_due(snapshot.tick, tick_ns):
-                continue
-            heard = publisher.get_subscription_count() > 0
-            if not heard and not recording:
-                self.skipped += 1
+        schedule, built = self.schedule(tick_ns, recording), {}
+        tick = snapshot.tick
+        for channel, publisher, every in schedule.wanted:
+            if tick % every:
                 continue
             data = channel.encode(snapshot, stamp_ns)
             built[channel.topic] = data
-            if heard:
+            if publisher is not None:
                 publisher.publish(data)
+        self.built += len(built)
+        self.skipped += schedule.due_between(tick - 1, tick) - len(built)
         return built

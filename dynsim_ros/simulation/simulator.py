@@ -24,6 +24,8 @@ from ..scene import get_value
 
 # Of a state with larger numbers (SI) than this, energies and forces might not be finite.
 _LARGEST = 1e100
+# Ticks that are computed in one go: they take some memory.
+MOST_AT_ONCE = 1024
 
 
 class DivergenceError(ArithmeticError):
@@ -142,6 +144,52 @@ class Simulator:
         self.advance(self.settings.tick_ns)
         self.tick += 1
 
+    def advance_ticks(self, count):
+        """
+        Advance by some ticks in one go, to the state that single ticks lead to.
+
+        Raises DivergenceError where a single tick would, and then stands at the tick before.
+        """
+        while count > 0:
+            even = self._count_even(count)
+            done = self._advance_even(even) if even > 1 else 0
+            if done < even or even == 0:
+                self.advance_tick()
+                done += 1
+            count -= done
+
+    def _count_even(self, count):
+        """Return how many of some ticks, MOST_AT_ONCE at most, end before the next change."""
+        change = self._next_change()
+        if change is not None:
+            count = min(count, (change - self.time_ns - 1) // self.settings.tick_ns)
+        return min(count, MOST_AT_ONCE)
+
+    def _advance_even(self, count):
+        """Advance by ticks without a change among them, as far as all is well; return how many."""
+        if self.failure is not None:
+            return 0
+        if not self._is_begun:
+            self._begin_steps()
+        tick_ns = self.settings.tick_ns
+        states = np.full((count, self.layout.size), np.nan)
+        problem = None
+        try:
+            self._steps.fill(self.time_ns + tick_ns, tick_ns, states, self._next_change())
+        except IntegrationError as error:
+            problem = error  # the states from there on are no numbers
+        is_good = np.abs(states).max(axis=1) < _LARGEST
+        good = count if is_good.all() else int(is_good.argmin())
+        if good:
+            self._state = states[good - 1].copy()
+            self.time_ns += good * tick_ns
+            self.tick += good
+        if good < count and problem is None:
+            self._check(states[good], self.time_ns + tick_ns)
+        if good == 0 and problem is not None:
+            self._give_up(problem, self.time_ns + tick_ns)
+        return good
+
     def run(self, duration):
         """Advance by a duration [s], rounded up to whole ticks; return a Trajectory."""
         snapshots = [self.snapshot()]
@@ -199,15 +247,22 @@ class Simulator:
         try:
             state = self._steps.state_at(end, self._next_change())
         except IntegrationError as error:
-            self.failure = (f'the motion cannot be computed between {self.time:.9g} s and '
-                            f'{end / SECOND:.9g} s of simulated time: {error}; the state of '
-                            f'{self.time:.9g} s is kept')
-            raise DivergenceError(self.failure) from error
+            self._give_up(error, end)
+        self._check(state, end)
+        self._state = state
+        self.time_ns = end
+
+    def _give_up(self, error, end):
+        self.failure = (f'the motion cannot be computed between {self.time:.9g} s and '
+                        f'{end / SECOND:.9g} s of simulated time: {error}; the state of '
+                        f'{self.time:.9g} s is kept')
+        raise DivergenceError(self.failure) from error
+
+    def _check(self, state, end):
+        """Raise DivergenceError unless the state of an instant after this one is finite."""
         if not _is_finite(state):
             self.failure = self._describe_failure(state, end)
             raise DivergenceError(self.failure)
-        self._state = state
-        self.time_ns = end
 
     def _describe_failure(self, state, end):
         layout = self.layout

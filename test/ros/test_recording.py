@@ -7,6 +7,7 @@ import resource
 from dynsim_ros.bag.reader import open_bag
 from dynsim_ros.messages.cdr import decode
 from dynsim_ros.messages.commands import PARAMETER
+from live_node import age
 from mcap.reader import make_reader
 import pytest
 from scene_topics import DIAGNOSTICS, POSE
@@ -85,7 +86,7 @@ def test_reset_begins_a_new_file(node, client):
     client.pause()
     client.reset()
     stopped = client.record(False).message
-    first, second = sorted(set(node.bags) - before, key=lambda path: path.stat().st_mtime_ns)
+    first, second = sorted(set(node.bags) - before, key=age)
     assert stopped.endswith(str(second.relative_to(node.folder)))
     for path in (first, second):
         statistics = summary(path).statistics

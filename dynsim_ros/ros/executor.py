@@ -1,0 +1,60 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Which of rclpy's executors serves a node.
+
+EventsExecutor answers in half the time that SingleThreadedExecutor takes, but is experimental: its
+spin() was seen to run at full load and fire no timer. It is used after it has been tried.
+"""
+
+import time
+
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.executors import Executor, SingleThreadedExecutor
+from rclpy.node import Node
+
+try:
+    from rclpy.experimental.events_executor import EventsExecutor
+except ImportError:
+    EventsExecutor = None
+
+# The trial: a timer with this period has to fire twice in a time in which it could so often, and
+# waiting for it may take this share of a processor [s].
+_PERIOD, _LONGEST = 0.01, 1.0
+_LARGEST_LOAD = 0.4
+
+
+def new_executor(node: Node, fast=EventsExecutor) -> Executor:
+    """Return an executor that serves a node; fast: the one to be used if it works, or None."""
+    if fast is not None:
+        executor = fast()
+        executor.add_node(node)
+        problem = _problem(executor, node)
+        if problem is None:
+            return executor
+        node.get_logger().warning(f'{fast.__name__} {problem}; SingleThreadedExecutor is used')
+        executor.remove_node(node)
+        executor.shutdown()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    return executor
+
+
+def _problem(executor: Executor, node: Node) -> str | None:
+    """Return what is wrong with an executor, in words; None if it fires timers and can wait."""
+    fired = []
+    timer = node.create_timer(_PERIOD, lambda: fired.append(True),
+                              clock=Clock(clock_type=ClockType.STEADY_TIME))
+    begin, used = time.monotonic(), time.thread_time()
+    try:
+        while len(fired) < 2:
+            executor.spin_once(timeout_sec=2 * _PERIOD)
+            if time.monotonic() > begin + _LONGEST:
+                return f'fired {len(fired)} times in {_LONGEST:g} s a timer of {_PERIOD:g} s'
+        load = (time.thread_time() - used) / (time.monotonic() - begin)
+        return f'waits at {load:.0%} load' if load > _LARGEST_LOAD else None
+    except RuntimeError as error:
+        return f'fails: {error}'
+    finally:
+        node.destroy_timer(timer)

@@ -1,0 +1,117 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""The thread in which a run ticks, to absolute deadlines."""
+
+import threading
+import time
+
+from .inbox import Mailbox
+from .pacing import LONGEST_LAG, LONGEST_PERIOD, SECOND
+from .timer_slack import end_timer_slack
+
+# How long ticks may run before commands get their turn.
+BATCH = SECOND // 200
+# Ticks that nobody waits for are run in one go, as many as take about so long.
+_GO = SECOND // 1000
+_MOST_IN_ONE_GO = 1024
+
+
+class Ticker:
+    """
+    Runs the ticks that are due, and at tick boundaries what the mailbox holds.
+
+    A command takes effect at the last tick boundary before it arrived, however late the thread
+    is. What nobody waits for is not run tick by tick, but in one go when somebody asks; the
+    thread sleeps meanwhile. is_ready: function that tells whether the clock runs. error: what
+    the thread failed of, None as long as it has not.
+    """
+
+    def __init__(self, run, pacer, is_ready):
+        self.mailbox = Mailbox(lambda: pacer.now())
+        self.error = None
+        self._run, self._pacer, self._is_ready = run, pacer, is_ready
+        self._ticks_in_one_go = 1
+        self._is_ending = False
+        self._thread = threading.Thread(target=self._work, name='ticks', daemon=True)
+
+    def begin(self):
+        """Start the thread."""
+        self._pacer.restart(self._run.simulator.time_ns)
+        self.mailbox.begin(self._thread)
+        self._thread.start()
+
+    def end(self):
+        """End the thread; what it was told before is done."""
+        self._is_ending = True
+        self.mailbox.wake()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _work(self):
+        try:
+            end_timer_slack()
+            while not self._is_ending:
+                seconds = self._turn()
+                if seconds > 0.0:
+                    self.mailbox.wait(seconds)
+        except BaseException as error:
+            self.error = error
+        finally:
+            self.mailbox.end()
+
+    def _turn(self):
+        """Do what is due; return how long there is nothing to do [s]."""
+        self._carry_out()
+        if not self._goes_on():
+            return LONGEST_PERIOD / SECOND
+        simulator = self._run.simulator
+        due, left = self._pacer.due(simulator.time_ns, simulator.settings.tick_ns,
+                                    self._run.ticks_to_wanted())
+        if due > 0 and self._advance(due, time.monotonic_ns() + BATCH):
+            self._pacer.is_up_to_date()
+        return left / SECOND
+
+    def _goes_on(self):
+        return not (self._run.paused or self._run.finished) and self._is_ready()
+
+    def _carry_out(self):
+        """Do what the mailbox holds, each at the tick boundary before it arrived."""
+        mailbox, pacer = self.mailbox, self._pacer
+        arrival = mailbox.arrival()
+        if arrival is None:
+            return
+        limit = time.monotonic_ns() + LONGEST_LAG
+        while arrival is not None:
+            if pacer.factor > 0.0 and self._goes_on():
+                simulator = self._run.simulator
+                due = pacer.ticks_until(min(arrival, pacer.now()), simulator.time_ns,
+                                        simulator.settings.tick_ns)
+                if due > 0:
+                    self._advance(due, limit)
+            mailbox.next_letter().carry_out()
+            arrival = mailbox.arrival()
+
+    def _advance(self, due, limit):
+        """Run so many ticks, until a limit of the steady clock [ns]; return whether all are."""
+        run = self._run
+        while due > 0 and self._goes_on():
+            wanted = run.ticks_to_wanted()
+            count = min(due, wanted, self._ticks_in_one_go)
+            begin = time.monotonic_ns()
+            run.advance(count, count == wanted)
+            due -= count
+            # Behind the last tick that is due, none is late.
+            self._pacer.late += count == wanted and due > 0 and self._pacer.factor > 0.0
+            end = time.monotonic_ns()
+            if count == self._ticks_in_one_go < wanted:
+                self._learn(end - begin)
+            if end >= limit:
+                return due == 0
+        return True
+
+    def _learn(self, duration):
+        """Choose how many ticks to run in one go by how long that took [ns]."""
+        if duration < _GO:
+            self._ticks_in_one_go = min(2 * self._ticks_in_one_go, _MOST_IN_ONE_GO)
+        elif duration > 4 * _GO:
+            self._ticks_in_one_go = max(self._ticks_in_one_go // 2, 1)

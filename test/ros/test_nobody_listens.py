@@ -1,0 +1,101 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run that nobody looks at sleeps, and comes to the same states all the same."""
+
+from pathlib import Path
+import time
+
+from dynsim_ros.scene import load_scene
+from dynsim_ros.simulation import MoveAnchor, Simulator
+from geometry_msgs.msg import PointStamped
+import pytest
+from ros_client import stamps
+from scene_topics import DIAGNOSTICS, POSE, positions
+
+TICK = 1_000_000
+
+
+@pytest.fixture(scope='module')
+def node(start):
+    # a method that does not go over to another one, for which it would be compiled meanwhile
+    return start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4', '-p', 'publish_clock:=true')
+
+
+@pytest.fixture(scope='module')
+def client(node, connect):
+    client = connect(node)
+    client.listen({'/diagnostics': DIAGNOSTICS})
+    client.more('/diagnostics')
+    return client
+
+
+def told(client):
+    """Return {key: value} of the run in the next diagnostics."""
+    (array, *_) = client.more('/diagnostics')
+    return {item.key: item.value for item in array.status[0].values}
+
+
+def times_awake(node):
+    """Return how often the threads of the node's process have gone to sleep so far."""
+    lines = [line for path in Path(f'/proc/{node.process.pid}/task').glob('*/status')
+             for line in path.read_text().splitlines()]
+    return sum(int(line.split()[1]) for line in lines if line.startswith('voluntary_ctxt'))
+
+
+def test_it_sleeps_and_time_goes_on(client, node):
+    before, awake = told(client), times_awake(node)
+    client.more('/diagnostics', 2)
+    after, awake = told(client), times_awake(node) - awake
+    ticks, skipped = (
+        int(after[key]) - int(before[key])
+        for key in ('tick', 'messages not built (nobody listened)'))
+    assert ticks > 1500 and after['missed ticks'] == before['missed ticks']
+    # far less often than it ticks, all that the middleware does included
+    assert awake < ticks / 3
+    # nine topics every tick, the markers every 40th
+    assert abs(skipped - ticks * 9 - ticks // 40) <= 1
+
+
+def test_who_joins_sees_the_next_tick(client):
+    client.listen({'sphere/pose': POSE})
+    begin = time.monotonic()
+    client.more('sphere/pose')
+    # each finds the other within milliseconds; otherwise it would sleep for up to a second
+    assert time.monotonic() - begin < 0.5
+    client.more('sphere/pose', 200)
+    client.pause()
+    client.drain()
+    messages = client.messages('sphere/pose')
+    times = stamps(messages)
+    assert times == list(range(times[0], times[0] + len(times) * TICK, TICK))
+    simulator = Simulator(load_scene('sphere_on_spring'), rate=1000.0, integrator='rk4')
+    simulator.advance(times[0])
+    for time_ns, position in zip(times, positions(messages).tolist()):
+        simulator.advance(time_ns - simulator.time_ns)
+        assert simulator.snapshot().position('sphere').tolist() == position
+
+
+def test_a_command_that_nobody_sees(start, connect):
+    """Command a node that sleeps; what is recorded of it is when it took effect."""
+    node = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4', '-r', '__ns:=/unseen',
+                 name='/unseen/dynsim')
+    client = connect(node)
+    command = PointStamped()
+    command.point.x = 0.5
+    client.publish('hand/command', command)
+    time.sleep(0.3)
+    tick = int(client.pause().message.split()[3].rstrip(','))
+    client.listen({'sphere/pose': POSE})
+    (message,) = client.steps(1, 'sphere/pose')
+    found = positions([message]).tolist()[0]
+    # it took effect at one of the ticks between, and at none else
+    assert found in [after_command(at, tick + 1) for at in range(max(tick - 1500, 0), tick + 1)]
+
+
+def after_command(at, ticks):
+    """Return where the sphere is after so many ticks, with a command after some of them."""
+    simulator = Simulator(load_scene('sphere_on_spring'), rate=1000.0, integrator='rk4')
+    simulator.advance_ticks(at)
+    simulator.apply(MoveAnchor('hand', (0.5, 0.0, 0.0)))
+    simulator.advance_ticks(ticks - at)
+    return simulator.snapshot().position('sphere').tolist()
