@@ -1,9 +1,14 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Print, as JSON, {scene and method: every bit of a short commanded run of it, hashed}."""
+"""
+Print, as JSON, {scene and method: every bit of a short commanded run of it, hashed}.
+
+Arguments: the method of a scene of which alone to do so, and the scene, else of all.
+"""
 
 import hashlib
 import json
+import sys
 
 from dynsim_ros.scene import load_scene, scene_names
 from dynsim_ros.simulation import MoveAnchor, PushBody, Simulator
@@ -36,8 +41,12 @@ def bits_of_all():
 
 
 def main():
-    """Print the digests of all runs."""
-    print(json.dumps(bits_of_all()))
+    """Print the digests of all runs, or of the one that is asked for."""
+    if len(sys.argv) > 1:
+        method, name = sys.argv[1:]
+        print(json.dumps({f'{name} {method}': bits_of(name, method)}))
+    else:
+        print(json.dumps(bits_of_all()))
 
 
 if __name__ == '__main__':

@@ -33,6 +33,15 @@ def test_compiled_and_as_plain_python(here):
     assert in_plain_python(SCRIPT) == here
 
 
+def test_on_a_processor_that_fuses_nothing(here):
+    """Nor has it vectors of four numbers; what is written as fused is so on any."""
+    plainest = environment(NUMBA_CPU_NAME='generic', NUMBA_CPU_FEATURES='')
+    found = json.loads(output_of([sys.executable, SCRIPT, 'auto', 'sphere_on_spring'],
+                                 env=plainest))
+    assert found.items() <= here.items()
+    assert len(found) == 1
+
+
 @pytest.mark.parametrize('room', ['scene', 'physics', 'integrators', 'simulation'])
 def test_nothing_that_adds_up_differently_elsewhere(room):
     """
