@@ -4,6 +4,7 @@
 
 from dataclasses import dataclass
 
+from .publish_rates import PUBLISH_RATES
 from ..bag.writer import COMPRESSIONS
 from ..scene import did_you_mean, Quantity, SceneError
 
@@ -27,6 +28,11 @@ OWN = {
     'publish_clock': Own(False, 'publish simulated time on /clock'),
     'duration': Own(0.0, 'simulated time after which the node ends [s], 0 = never',
                     Quantity('s', 'duration', minimum=0.0, maximum=1e9)),
+    **{name: Own(0.0, f'how often {what} are published [Hz], an integer divisor of rate; '
+                      '0 = every tick',
+                 Quantity('Hz', 'publish rate', minimum=0.0, maximum=1e4))
+       for name, what in PUBLISH_RATES.items()},
+    'publish_wrenches': Own(True, 'publish and record the wrenches'),
     'record.enable': Own(False, 'record from the start (later: service ~/record)',
                          read_only=True),
     'record.directory': Own('runs', 'folder for bags; a change holds for the next one'),

@@ -7,6 +7,7 @@ from rcl_interfaces.msg import (FloatingPointRange, ParameterDescriptor, Paramet
 from rclpy.parameter import Parameter
 
 from .own_parameters import check_own, OWN
+from .publish_rates import check_publish_rates, PUBLISH_RATES
 from ..scene import (did_you_mean, get_value, get_values, load_scene, scene_quantities,
                      SceneError)
 from ..simulation import Settings
@@ -46,6 +47,8 @@ class Parameters:
             if name not in self.known:
                 raise SceneError(self._unknown(name))
         self.scene, self.settings = changed(scene, Settings(), given, at_start=True)
+        check_publish_rates(self.settings.rate, self.own)
+        self._publish_rates = {name: self.own[name] for name in PUBLISH_RATES}
         for name, value in self._values(self.scene, self.settings).items():
             node.declare_parameter(name, value, self._descriptor(name), ignore_override=True)
 
@@ -87,11 +90,21 @@ class Parameters:
         """Take over those that are the node's own."""
         self.own.update(self._node_values(parameters))
 
+    def check_publish_rates(self, parameters, settings):
+        """Raise SceneError if a group of parameters would leave a rate that is not possible."""
+        values = {parameter.name: parameter.value for parameter in parameters}
+        check_publish_rates(values.get('rate', settings.rate), {**self.own, **values})
+
+    def reset(self):
+        """Take back the publish rates of the start, which go with the rate of the start."""
+        self.own.update(self._publish_rates)
+
     def restored(self, simulator):
         """Return Parameters that say what the simulator now has."""
         values = self._values(simulator.scene, simulator.settings)
         return [Parameter(name, value=value) for name, value in values.items()
-                if name not in OWN and _plain(self._node.get_parameter(name).value) != value]
+                if (name not in OWN or name in PUBLISH_RATES)
+                and _plain(self._node.get_parameter(name).value) != value]
 
     def converted(self, parameter):
         """Return a parameter with an int (or ints) turned into a double where one is meant."""

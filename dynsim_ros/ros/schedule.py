@@ -9,19 +9,20 @@ class Schedule:
     """
     What to build at which ticks, worked out anew only when something about it changes.
 
-    heard: whether anybody listens, for each of channels and publishers; recording: whether all is
-    wanted; made_for: what it was worked out for. wanted: [(channel, publisher, every so many
-    ticks)] of what is built, the publisher None where nobody listens.
+    every: after how many ticks each of channels and publishers has a message, 0 for never; heard:
+    whether anybody listens; recording: whether all is wanted; made_for: what it was worked out
+    for. wanted: [(channel, publisher, every so many ticks)] of what is built, the publisher None
+    where nobody listens.
     """
 
-    def __init__(self, channels, publishers, heard, tick_ns, recording, made_for):
-        every = [channel.every(tick_ns) for channel in channels]
+    def __init__(self, channels, publishers, every, heard, recording, made_for):
         self.made_for = made_for
         self.wanted = [(channel, publisher if listens else None, ticks)
                        for channel, publisher, listens, ticks
-                       in zip(channels, publishers, heard, every) if listens or recording]
+                       in zip(channels, publishers, heard, every)
+                       if ticks and (listens or recording)]
         self._intervals = sorted({ticks for _, _, ticks in self.wanted})
-        self._due = list(Counter(every).items())
+        self._due = list(Counter(filter(None, every)).items())
 
     def ticks_to_wanted(self, tick):
         """Return how many ticks it is to the next one with a wanted message; None: for ever."""

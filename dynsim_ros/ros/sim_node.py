@@ -79,7 +79,8 @@ class SimNode(Node):
 
     def _tie(self, simulator):
         """Make what publishes the run, what it ticks in and what commands it."""
-        topics = Topics(self, scene_channels(simulator.scene, simulator.layout), self.audience)
+        topics = Topics(self, scene_channels(simulator.scene, simulator.layout), self.audience,
+                        self.parameters.own)
         self.run = Run(simulator, topics, self._clock_publisher, self.parameters.own, self)
         self.ticker = Ticker(self.run, self.pacer,
                              lambda: self._followed is None or self._followed.is_good())
@@ -122,6 +123,7 @@ class SimNode(Node):
             self._check_clock({parameter.name: parameter.value for parameter in parameters},
                               self._followed is not None)
             values = self.parameters.run_values(parameters)
+            self.parameters.check_publish_rates(parameters, self.run.simulator.settings)
             if values:
                 # Others are told who listens meanwhile: commands have to wait, subscribers not.
                 self.compiling.prepare(self._copy(), values, self.audience.look)
@@ -156,6 +158,7 @@ class SimNode(Node):
     def _change(self, parameters):
         """Let the run have new values of parameters, from the present instant on."""
         self.parameters.accept(parameters)
+        self.run.topics.rates_changed()
         self.run.set_values(self.parameters.run_values(parameters))
         names = {parameter.name for parameter in parameters}
         self.run.record_settings({name: self.parameters.own[name]
@@ -182,6 +185,8 @@ class SimNode(Node):
         """Begin a new epoch, in the run's thread."""
         if self._followed is not None:
             self._followed.was_reset()
+        self.parameters.reset()
+        self.run.topics.rates_changed()
         self.diagnostics.begin()
         self._pace()
         self._begin_epoch()

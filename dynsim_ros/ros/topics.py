@@ -6,6 +6,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from .audience import Audience
 from .message_types import message_class
+from .publish_rates import every_of
 from .qos import profile
 from .schedule import Schedule
 
@@ -14,17 +15,20 @@ class Topics:
     """
     Publishes the messages of a list of Channels, as the bytes that are also recorded.
 
-    Topics are relative to the node (~/). audience: Audience of these and other publishers.
+    Topics are relative to the node (~/). audience: Audience of these and other publishers;
+    options: dict of the node's own parameters, always up to date.
     skipped: messages that were due but not built; built: those that were.
     """
 
-    def __init__(self, node, channels, audience: Audience):
+    def __init__(self, node, channels, audience: Audience, options):
         self.channels = channels
         self.skipped = self.built = 0
         self._node = node
         self._audience = audience
+        self._options = options
         self._publishers = [self._publisher(channel) for channel in channels]
         self._schedule = None
+        self._rates_version = 0
 
     def resolve(self, topic):
         """Return the full name that a topic has here, remapped if it is."""
@@ -38,14 +42,18 @@ class Topics:
 
     def schedule(self, tick_ns, recording):
         """Return the Schedule for ticks of a length [ns]."""
-        version = self._audience.version
+        made_for = self._audience.version, self._rates_version, tick_ns, recording
         schedule = self._schedule
-        if schedule is None or schedule.made_for != (version, tick_ns, recording):
+        if schedule is None or schedule.made_for != made_for:
             heard = [self._audience.hears(publisher) for publisher in self._publishers]
+            every = [every_of(channel, tick_ns, self._options) for channel in self.channels]
             schedule = self._schedule = Schedule(
-                self.channels, self._publishers, heard, tick_ns, recording,
-                (version, tick_ns, recording))
+                self.channels, self._publishers, every, heard, recording, made_for)
         return schedule
+
+    def rates_changed(self):
+        """Take note that an option may have changed."""
+        self._rates_version += 1
 
     def pass_over(self, first, last, tick_ns):
         """Count what was due at the ticks first + 1 to last, at which nobody wanted anything."""

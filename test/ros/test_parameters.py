@@ -20,7 +20,8 @@ INITIAL = {'sphere.position': 'm', 'sphere.velocity': 'm/s', 'sphere.orientation
            'sphere.angular_velocity': 'rad/s'}
 SETTINGS = {'rate': 'Hz', 'step': 's', 'tolerance': '', 'wrench_timeout': 's'}
 OTHERS = {'integrator', 'anchor_interpolation', 'scene', 'real_time_factor', 'publish_clock',
-          'duration', 'record.enable', 'record.directory', 'record.compression', 'use_sim_time'}
+          'duration', 'publish_rate.state', 'publish_rate.wrench', 'publish_rate.energy',
+          'publish_wrenches', 'record.enable', 'record.directory', 'record.compression', 'use_sim_time'}
 
 
 @pytest.fixture(scope='module')
