@@ -16,8 +16,11 @@ _OK, _WARN, _ERROR = 0, 1, 2
 class Diagnostics:
     """Publishes a DiagnosticArray; real_time_factor and rate are those since the last one."""
 
-    def __init__(self, node, run, pacer, audience):
+    def __init__(self, node, run, ticker, pacer, audience):
         self._run = run
+        self._ticker = ticker
+        self._began = time.monotonic_ns()
+        self._drift = 0.0
         self._pacer = pacer
         self._name = node.get_name()
         self._audience = audience
@@ -49,7 +52,8 @@ class Diagnostics:
         is_heard = self._audience.hears(self._publisher)
         if not is_heard and self._run.bag is None:
             return
-        statuses = [self._run_status(), self._energy_status(), self._recorder_status()]
+        statuses = [self._run_status(), self._timing_status(), self._energy_status(),
+                    self._recorder_status()]
         data = encode(DIAGNOSTICS.type_name,
                       {'header': header(self._run.stamp_ns), 'status': statuses})
         if is_heard:
@@ -73,25 +77,42 @@ class Diagnostics:
             'messages not built (nobody listened)': run.topics.skipped,
             'commands refused': run.refused})
 
+    def _timing_status(self):
+        run, lateness = self._run, self._ticker.lateness
+        late = {f'p{percent}': lateness.percentile(percent) for percent in (50, 99)}
+        late['max'] = lateness.longest
+        elapsed = time.monotonic_ns() - self._began
+        steps, rejected = run.simulator.counts
+        return self._status('timing', _OK, 'of the whole run', {
+            **{f'lateness of ticks {name} [us]': _shown(ns and ns * 1e-3, 1)
+               for name, ns in late.items()},
+            **{f'share of {name} [%]': f'{100.0 * spent / elapsed:.3f}'
+               for name, spent in run.work.items()},
+            'share of the process [%]': f'{100.0 * time.process_time_ns() / elapsed:.3f}',
+            'steps of the integrator': steps, 'rejected steps': rejected})
+
     def _energy_status(self):
         energy = self._run.simulator.snapshot().energy
+        self._drift = max(self._drift, abs(energy.imbalance))
         return self._status('energy', _OK, f'{energy.total:.9g} J', {
             'kinetic [J]': f'{energy.kinetic:.9g}',
             'gravitational [J]': f'{energy.gravitational:.9g}',
             'spring [J]': f'{energy.spring:.9g}', 'total [J]': f'{energy.total:.9g}',
             **{f'work of {name} [J]': f'{work:.9g}' for name, work in energy.work.items()},
             'imbalance [J]': f'{energy.imbalance:.3g}',
+            'largest imbalance [J]': f'{self._drift:.3g}',
             'removed by normalising orientations':
                 f'{self._run.simulator.normalisation_removed:.3g}'})
 
     def _recorder_status(self):
         bag = self._run.bag
         if bag is None:
-            return self._status('recorder', _OK, 'not recording', {})
+            return self._status('recorder', _OK, 'not recording', {'lost before': self._run.lost})
         recorder = bag.recorder
         level = _ERROR if recorder.error else _WARN if recorder.lost else _OK
         return self._status('recorder', level, recorder.error or 'recording', {
-            'file': bag.path, 'messages': recorder.messages, 'lost': recorder.lost})
+            'file': bag.path, 'messages': recorder.messages, 'lost': recorder.lost,
+            'lost before': self._run.lost})
 
     def _status(self, task, level, message, values):
         return {'level': level, 'name': f'{self._name}: {task}', 'message': message,

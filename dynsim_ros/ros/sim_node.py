@@ -70,7 +70,7 @@ class SimNode(Node):
                  was_reset=self._was_reset, follow_up=self._follow_up)
         self.compiling = Compiling(simulator, self.get_logger(),
                                    lambda: is_ending() or self.run.finished)
-        self.diagnostics = Diagnostics(self, self.run, self.pacer, self.audience)
+        self.diagnostics = Diagnostics(self, self.run, self.ticker, self.pacer, self.audience)
         self._epoch_publisher = self.create_publisher(
             message_class(EPOCH.type_name), f'~/{EPOCH.topic}', profile(EPOCH.qos))
         self._own_timers = []
@@ -83,7 +83,8 @@ class SimNode(Node):
                         self.parameters.own)
         self.run = Run(simulator, topics, self._clock_publisher, self.parameters.own, self)
         self.ticker = Ticker(self.run, self.pacer,
-                             lambda: self._followed is None or self._followed.is_good())
+                             lambda: self._followed is None or self._followed.is_good(),
+                             self.parameters.own, lambda line: self.get_logger().warning(line))
         self.commands = Commands(self, self.run, self.ticker.mailbox)
 
     def begin(self):

@@ -5,9 +5,10 @@
 import threading
 import time
 
+from .histogram import Histogram
 from .inbox import Mailbox
 from .pacing import LONGEST_LAG, LONGEST_PERIOD, SECOND
-from .timer_slack import end_timer_slack
+from .real_time import be_first, end_timer_slack, lock_memory, stay_on
 
 # How long ticks may run before commands get their turn.
 BATCH = SECOND // 200
@@ -23,13 +24,18 @@ class Ticker:
     A command takes effect at the last tick boundary before it arrived, however late the thread
     is. What nobody waits for is not run tick by tick, but in one go when somebody asks; the
     thread sleeps meanwhile. is_ready: function that tells whether the clock runs. error: what
-    the thread failed of, None as long as it has not.
+    the thread failed of, None as long as it has not. options: dict of the node's own parameters;
+    warn: takes a line about what of them is not granted. lateness: Histogram of how long after
+    their deadlines ticks began [ns].
     """
 
-    def __init__(self, run, pacer, is_ready):
+    def __init__(self, run, pacer, is_ready, options, warn):
         self.mailbox = Mailbox(lambda: pacer.now())
         self.error = None
         self._run, self._pacer, self._is_ready = run, pacer, is_ready
+        self.lateness = Histogram()
+        self._options, self._warn = options, warn
+        self._spin = options['real_time.spin']
         self._ticks_in_one_go = 1
         self._is_ending = False
         self._thread = threading.Thread(target=self._work, name='ticks', daemon=True)
@@ -49,15 +55,27 @@ class Ticker:
 
     def _work(self):
         try:
-            end_timer_slack()
+            self._ask_for_real_time()
             while not self._is_ending:
                 seconds = self._turn()
-                if seconds > 0.0:
-                    self.mailbox.wait(seconds)
+                if seconds > self._spin:
+                    self.mailbox.wait(seconds - self._spin)
         except BaseException as error:
             self.error = error
         finally:
             self.mailbox.end()
+
+    def _ask_for_real_time(self):
+        end_timer_slack()
+        options, refusals = self._options, []
+        if options['real_time.cpu'] >= 0.0:
+            refusals.append(stay_on(int(options['real_time.cpu'])))
+        if options['real_time.priority'] >= 1.0:
+            refusals.append(be_first(int(options['real_time.priority'])))
+        if options['real_time.lock_memory']:
+            refusals.append(lock_memory())
+        for line in filter(None, refusals):
+            self._warn(line)
 
     def _turn(self):
         """Do what is due; return how long there is nothing to do [s]."""
@@ -98,6 +116,10 @@ class Ticker:
             wanted = run.ticks_to_wanted()
             count = min(due, wanted, self._ticks_in_one_go)
             begin = time.monotonic_ns()
+            if count == wanted and self._pacer.factor > 0.0:
+                simulator = run.simulator
+                self.lateness.add(self._pacer.now() - self._pacer.deadline(
+                    simulator.time_ns + count * simulator.settings.tick_ns))
             run.advance(count, count == wanted)
             due -= count
             # Behind the last tick that is due, none is late.

@@ -57,6 +57,7 @@ class Simulator:
         self.time_ns = 0
         self.tick = 0
         self.failure = None
+        self._steps, self._counted = None, (0, 0)
         self._build()
         self.layout = Layout(self.scene)
         self._state = initial_state(self.scene, self._model)
@@ -67,6 +68,8 @@ class Simulator:
 
     def _build(self):
         self._model = build_model(self.scene)
+        if self._steps is not None:
+            self._counted = self.counts
         self._steps = None
         self._is_begun = False
 
@@ -88,6 +91,14 @@ class Simulator:
     def normalisation_removed(self):
         """Return the sum of what normalising the quaternions removed since the last change."""
         return 0.0 if self._steps is None else self._steps.removed
+
+    @property
+    def counts(self):
+        """Return (steps, rejected steps) of the integrator since the start of the epoch."""
+        if self._steps is None:
+            return self._counted
+        return tuple(before + int(count) for before, count
+                     in zip(self._counted, self._steps.counts))
 
     @property
     def shortfall(self):

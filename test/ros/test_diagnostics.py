@@ -37,7 +37,7 @@ def test_names_and_levels(arrays):
     for array in arrays:
         assert array.header.frame_id == 'world'
         assert [status.name for status in array.status] == [
-            'dynsim: run', 'dynsim: energy', 'dynsim: recorder']
+            'dynsim: run', 'dynsim: timing', 'dynsim: energy', 'dynsim: recorder']
         assert {status.level for status in array.status} == {DiagnosticStatus.OK}
         assert {status.hardware_id for status in array.status} == {'sphere_on_spring'}
 
@@ -63,7 +63,7 @@ def test_the_run(arrays):
 
 
 def test_energy_is_that_of_the_topic(client, arrays):
-    told = values(arrays[-1].status[1])
+    told = values(arrays[-1].status[2])
     numbers = client.last('energy').data
     for number, key in enumerate((
             'kinetic [J]', 'gravitational [J]', 'spring [J]', 'total [J]', 'work of damper [J]',
@@ -71,9 +71,18 @@ def test_energy_is_that_of_the_topic(client, arrays):
         assert float(told[key]) == pytest.approx(numbers[number], rel=1e-8)
 
 
+def test_timing_of_the_whole_run(arrays):
+    told = {key: float(value) for key, value in values(arrays[-1].status[1]).items()}
+    lateness = [told[f'lateness of ticks {name} [us]'] for name in ('p50', 'p99', 'max')]
+    assert 0.0 <= lateness[0] <= lateness[1] <= lateness[2]
+    shares = [told[f'share of {name} [%]'] for name in ('step', 'publish', 'record')]
+    assert all(0.0 < share < 100.0 for share in shares)
+    assert told['steps of the integrator'] >= 1.0 and told['rejected steps'] >= 0.0
+
+
 def test_the_recorder(node, arrays):
-    told = values(arrays[-1].status[2])
-    assert arrays[-1].status[2].message == 'recording'
+    told = values(arrays[-1].status[3])
+    assert arrays[-1].status[3].message == 'recording'
     assert node.folder / told['file'] == node.bags[0]
     assert int(told['messages']) > 500 and told['lost'] == '0'
 
@@ -81,7 +90,7 @@ def test_the_recorder(node, arrays):
 def test_what_nobody_listens_to_is_not_built(client):
     client.record(False)
     (array, *_) = client.more('/diagnostics')
-    assert array.status[2].message == 'not recording'
+    assert array.status[3].message == 'not recording'
     before = int(values(array.status[0])['messages not built (nobody listened)'])
     client.steps(5, 'sphere/pose')
     (array, *_) = client.more('/diagnostics')

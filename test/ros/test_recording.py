@@ -43,7 +43,7 @@ def summary(path):
 def last_told(client):
     """Return the recorder's status in the next diagnostics."""
     (array, *_) = client.more('/diagnostics')
-    return array.status[2]
+    return array.status[3]
 
 
 def test_stop_and_start_name_the_file(node, client):

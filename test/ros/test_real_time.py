@@ -1,0 +1,45 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is asked of the operating system is had, or a line says that it is not granted."""
+
+import os
+from pathlib import Path
+
+from live_node import start_refused, with_parameters
+from scene_topics import POSE
+
+
+def tasks(node):
+    return [int(path.name) for path in Path(f'/proc/{node.process.pid}/task').iterdir()]
+
+
+def test_all_of_it(start, connect):
+    cpu = max(os.sched_getaffinity(0))
+    node = start(*with_parameters({
+        'rate': 1000.0, 'integrator': 'rk4', 'real_time.spin': 5e-5, 'real_time.priority': 20.0,
+        'real_time.cpu': cpu, 'real_time.lock_memory': 'true'}))
+    client = connect(node)
+    client.listen({'sphere/pose': POSE})
+    client.more('sphere/pose', 100)
+    (only,) = [task for task in tasks(node) if len(os.sched_getaffinity(task)) == 1] if len(
+        os.sched_getaffinity(0)) > 1 else [None]
+    assert only is None or os.sched_getaffinity(only) == {cpu}
+    first = [task for task in tasks(node) if os.sched_getscheduler(task) == os.SCHED_FIFO]
+    assert first == [only] if first and only else first or (
+        'real_time.priority: 20 is not granted' in node.output)
+    status = Path(f'/proc/{node.process.pid}/status').read_text()
+    (locked,) = [line.split()[1] for line in status.splitlines() if line.startswith('VmLck')]
+    assert locked != '0' or 'real_time.lock_memory: is not granted' in node.output
+    node.stop()
+
+
+def test_a_processor_that_does_not_exist(start, connect):
+    node = start('-p', 'real_time.cpu:=1000.0', '-p', 'integrator:=rk4')
+    client = connect(node)
+    client.listen({'sphere/pose': POSE})
+    client.more('sphere/pose', 3)
+    assert 'real_time.cpu: 1000 is not possible' in node.output
+
+
+def test_out_of_range(tmp_path):
+    assert 'real_time.spin' in start_refused(tmp_path, '-p', 'real_time.spin:=1.0')
