@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from .qos import Qos, STATE
+from .tick_rows import Row
 
 WORLD = 'world'
 _SECOND = 1_000_000_000
@@ -19,15 +20,17 @@ class Channel:
     A topic that is published from the state of a run.
 
     topic: relative to the node, such as 'sphere/pose'; type_name: of its messages;
-    encode(snapshot, stamp_ns): returns one message as CDR bytes; interval_ns: the time that
-    passes at least between two messages [ns], 0 for every tick.
+    encode(snapshot, stamp_ns): returns one message as CDR bytes, None where there is a row: Row,
+    how a kernel fills it in; interval_ns: the time that passes at least between two messages
+    [ns], 0 for every tick.
     """
 
     topic: str
     type_name: str
-    encode: Callable
+    encode: Callable | None
     qos: Qos = STATE
     interval_ns: int = 0
+    row: Row | None = None
 
     def every(self, tick_ns: int) -> int:
         """Return how many ticks of a length [ns] it is from one message to the next."""

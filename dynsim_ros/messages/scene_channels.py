@@ -4,33 +4,33 @@
 
 from __future__ import annotations
 
-import struct
-
-from .cdr import encode, Template
-from .channel import Channel, stamp, WORLD
+from .channel import Channel, WORLD
 from .markers import marker_channel
+from .template import Template
+from .tick_rows import Row
 from ..scene import Rigid
 from ..scene.orientation import to_ros
+from ..simulation.numbers import ENERGIES, Numbers
+
+__all__ = ['ENERGIES', 'scene_channels', 'wrench_kinds']
 
 POSE = 'geometry_msgs/msg/PoseStamped'
 TWIST = 'geometry_msgs/msg/TwistStamped'
 WRENCH = 'geometry_msgs/msg/WrenchStamped'
 ARRAY = 'std_msgs/msg/Float64MultiArray'
-ENERGIES = ('kinetic', 'gravitational', 'spring', 'total', 'work_damper', 'work_air',
-            'work_anchor', 'work_push', 'imbalance')
 # What stands where a message has a field for what a particle or an anchor does not have.
-_NO_ROTATION = (0.0, 0.0, 0.0)
-_IDENTITY = (0.0, 0.0, 0.0, 1.0)
+_ZERO = {'x': 0.0, 'y': 0.0, 'z': 0.0}
+_UNTURNED = {'pose': {'orientation': {**_ZERO, 'w': 1.0}}}
 
 
 def scene_channels(scene, layout):
     """Return the Channels of a scene; layout: Layout of its arrays."""
-    channels = []
+    channels, numbers = [], Numbers(layout)
     for body in scene.bodies:
-        channels += [_pose(body, layout), _twist(body, layout)]
-        channels += [_wrench(kind, body, layout) for kind in wrench_kinds(scene, body)]
-    channels += [_anchor_pose(anchor, i) for i, anchor in enumerate(scene.anchors)]
-    return [*channels, _energy(), marker_channel(scene)]
+        channels += [_pose(body, numbers), _twist(body, numbers)]
+        channels += [_wrench(kind, body, numbers) for kind in wrench_kinds(scene, body)]
+    channels += [_anchor_pose(anchor, numbers) for anchor in scene.anchors]
+    return [*channels, _energy(numbers), marker_channel(scene)]
 
 
 def wrench_kinds(scene, body):
@@ -48,66 +48,54 @@ def wrench_kinds(scene, body):
     return [kind for kind, is_present in present.items() if is_present]
 
 
-def _stamped(type_name):
-    return Template(type_name, {'header': {'frame_id': WORLD}}).pack
+def _row(topic, type_name, numbers, fixed=None):
+    """Return the Channel of a stamped message; numbers: {leaf: place in Numbers}."""
+    template = Template(type_name, {'header': {'frame_id': WORLD}, **(fixed or {})})
+    return Channel(topic, type_name, None, row=Row(template, numbers))
 
 
-def _pose(body, layout):
-    pack, position = _stamped(POSE), layout.position(body.name)
-    orientation = layout.orientation(body.name)
-
-    def encode_pose(snapshot, stamp_ns):
-        y = snapshot.state
-        q = _IDENTITY if orientation is None else to_ros(y[orientation].tolist())
-        return pack(*stamp(stamp_ns), *y[position].tolist(), *q)
-
-    return Channel(f'{body.name}/pose', POSE, encode_pose)
+def _xyz(prefix, places):
+    """Return {leaf: place} of a vector, nothing where there is none."""
+    return {f'{prefix}.{axis}': place for axis, place in zip('xyz', places or ())}
 
 
-def _twist(body, layout):
-    pack, velocity = _stamped(TWIST), layout.velocity(body.name)
-    angular_velocity = layout.angular_velocity(body.name)
-
-    def encode_twist(snapshot, stamp_ns):
-        y = snapshot.state
-        omega = _NO_ROTATION if angular_velocity is None else y[angular_velocity].tolist()
-        return pack(*stamp(stamp_ns), *y[velocity].tolist(), *omega)
-
-    return Channel(f'{body.name}/twist', TWIST, encode_twist)
+def _pose(body, numbers):
+    position = _xyz('pose.position', numbers.position(body.name))
+    orientation = numbers.orientation(body.name)
+    if orientation is None:
+        return _row(f'{body.name}/pose', POSE, position, _UNTURNED)
+    turned = {f'pose.orientation.{axis}': place
+              for axis, place in zip('xyzw', to_ros(orientation))}
+    return _row(f'{body.name}/pose', POSE, {**position, **turned})
 
 
-def _wrench(kind, body, layout):
-    pack, force = _stamped(WRENCH), layout.velocity(body.name)
-    torque = layout.angular_velocity(body.name)
-
-    def encode_wrench(snapshot, stamp_ns):
-        row = snapshot.force_row(kind)
-        moment = _NO_ROTATION if torque is None else row[torque].tolist()
-        return pack(*stamp(stamp_ns), *row[force].tolist(), *moment)
-
-    return Channel(f'{body.name}/wrench/{kind}', WRENCH, encode_wrench)
+def _two_vectors(topic, type_name, names, first, second):
+    """Return the Channel of two vectors; of a particle the second one is zero."""
+    message = type_name.rpartition('/')[2].removesuffix('Stamped').lower()
+    numbers = {**_xyz(f'{message}.{names[0]}', first), **_xyz(f'{message}.{names[1]}', second)}
+    return _row(topic, type_name, numbers,
+                {message: {names[1]: _ZERO}} if second is None else None)
 
 
-def _anchor_pose(anchor, i):
-    pack = _stamped(POSE)
-
-    def encode_anchor(snapshot, stamp_ns):
-        return pack(*stamp(stamp_ns), *snapshot.anchors[i, :3].tolist(), *_IDENTITY)
-
-    return Channel(f'{anchor.name}/pose', POSE, encode_anchor)
+def _twist(body, numbers):
+    return _two_vectors(f'{body.name}/twist', TWIST, ('linear', 'angular'),
+                        numbers.velocity(body.name), numbers.angular_velocity(body.name))
 
 
-def _energy():
-    # The numbers are the end of the message; what stands before them never changes.
+def _wrench(kind, body, numbers):
+    return _two_vectors(f'{body.name}/wrench/{kind}', WRENCH, ('force', 'torque'),
+                        numbers.force(kind, body.name), numbers.torque(kind, body.name))
+
+
+def _anchor_pose(anchor, numbers):
+    position = _xyz('pose.position', numbers.anchor_position(anchor.name))
+    return _row(f'{anchor.name}/pose', POSE, position, _UNTURNED)
+
+
+def _energy(numbers):
     size = len(ENERGIES)
     dimension = {'label': ', '.join(ENERGIES) + ' [J]', 'size': size, 'stride': size}
-    template = encode(ARRAY, {'layout': {'dim': [dimension]}, 'data': [0.0] * size})
-    numbers = struct.Struct(f'<{size}d')
-    fixed = template[:-numbers.size]
-
-    def encode_energy(snapshot, _):
-        e = snapshot.energy
-        return fixed + numbers.pack(e.kinetic, e.gravitational, e.spring, e.total,
-                                    *e.work.values(), e.imbalance)
-
-    return Channel('energy', ARRAY, encode_energy)
+    template = Template(ARRAY, {'layout': {'dim': [dimension], 'data_offset': 0},
+                                'data': [None] * size})
+    return Channel('energy', ARRAY, None, row=Row(template, {
+        f'data.{i}': numbers.energy(name) for i, name in enumerate(ENERGIES)}))

@@ -6,57 +6,54 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 import struct
+from typing import NamedTuple
 
 from .checks import check_elements, fields_for
 from .definitions import Field
 from .primitives import code, LITTLE_ENDIAN, number_bytes, SIZES, string_bytes
 
 
+class Place(NamedTuple):
+    """Where a number of a message stands: its first byte, and its letter in the struct module."""
+
+    start: int
+    code: str
+
+
 class Template:
     """
-    A message type with some values fixed; the other numbers are filled in by `pack`.
+    A message type with some values fixed; the other numbers are filled in.
 
     fixed: nested dict of what stays the same: strings (those not given are ''), the sequences
     (each has to be given, its length stays), and any numbers. leaves: dotted names of all other
-    numbers in wire order, such as 'header.stamp.sec' or 'pose.position.x'. size: of the message
-    in bytes, with the 4-byte header.
+    numbers in wire order, such as 'header.stamp.sec' or 'pose.position.x'; places: {leaf: Place}.
+    size: of the message in bytes, with the 4-byte header; content: its bytes, all leaves zero;
+    padding: indices of the bytes that mean nothing.
     """
 
     def __init__(self, type_name: str, fixed: Mapping | None = None):
         """Lay the message out; raises ValueError naming the field where it has no fixed size."""
         self.type_name = type_name
-        leaves = []
-        # Each segment is a constant and the slice of the values that follow it.
-        segments = []
-        layout = ['<']
-        constant = bytearray(LITTLE_ENDIAN)
-        at = 0
-        for path, alignment, content in _items(type_name, fixed or {}, type_name, ''):
-            padding = -at % alignment
-            size = len(content) if isinstance(content, bytes) else alignment
-            at += padding + size
-            if isinstance(content, bytes):
-                constant += bytes(padding) + content
+        self.places: dict[str, Place] = {}
+        content, padding, layout = bytearray(LITTLE_ENDIAN), [], ['<']
+        end = 0
+        for leaf, alignment, item in _items(type_name, fixed or {}, type_name, ''):
+            start = len(content) + (len(LITTLE_ENDIAN) - len(content)) % alignment
+            padding += range(len(content), start)
+            content += bytes(start - len(content))
+            if isinstance(item, bytes):
+                content += item
                 continue
-            if constant:
-                constant += bytes(padding)
-                layout.append(f'{len(constant)}s')
-                segments.append([bytes(constant), len(leaves), len(leaves)])
-                constant.clear()
-            else:
-                layout.append(f'{padding}x')
-            layout.append(content)
-            leaves.append(path)
-            segments[-1][2] += 1
-        if constant:
-            layout.append(f'{len(constant)}s')
-            segments.append([bytes(constant), len(leaves), len(leaves)])
-        # The last slice is open, so that a value too many is an error, not left out.
-        segments[-1][2] = None
-        self.leaves = tuple(leaves)
-        self.size = at + len(LITTLE_ENDIAN)
-        self._segments = tuple(map(tuple, segments))
-        self._pack = struct.Struct(''.join(layout)).pack
+            self.places[leaf] = Place(start, item)
+            content += bytes(alignment)
+            layout.append(f'{start - end}x{item}')
+            end = len(content)
+        self.leaves = tuple(self.places)
+        self.size = len(content)
+        self.content = bytes(content)
+        self.padding = tuple(padding)
+        self._pack = struct.Struct(f'{"".join(layout)}{self.size - end}x').pack
+        self._constant = int.from_bytes(content, 'little')
 
     def pack(self, *values) -> bytes:
         """
@@ -64,17 +61,15 @@ class Template:
 
         Raises ValueError for a wrong count or a value that does not fit its type.
         """
-        arguments = []
-        for constant, start, end in self._segments:
-            arguments.append(constant)
-            arguments += values[start:end]
         try:
-            return self._pack(*arguments)
+            numbers = self._pack(*values)
         except (struct.error, OverflowError) as error:
             if len(values) != len(self.leaves):
                 raise ValueError(f'{self.type_name}: {len(values)} values for {len(self.leaves)} '
                                  f'leaves ({", ".join(self.leaves)})') from None
             raise ValueError(f'{self.type_name}: {values} does not fit: {error}') from None
+        # Each of the two is zero where the other one is not.
+        return (int.from_bytes(numbers, 'little') | self._constant).to_bytes(self.size, 'little')
 
 
 def _items(type_name: str, fixed, where: str, prefix: str) -> Iterator[tuple]:

@@ -11,6 +11,7 @@ from .anchors import Anchors
 from .changes import changed
 from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
 from .layout import Layout
+from .row_kernel import Instants, prepare_rows
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
 from .trajectory import Trajectory
@@ -116,14 +117,19 @@ class Simulator:
                         self._state.copy(), self._anchors.motion_at(self.time_ns),
                         self._pushes.copy(), self._reference_energy)
 
+    def instant(self):
+        """Return the Instants of the present one, to be used before anything changes."""
+        anchors = self._anchors
+        return Instants(self._model, anchors.motion, self.time_ns - anchors.since, self._pushes,
+                        self._reference_energy, self._state.reshape(1, -1), 0)
+
     def prepare(self):
         """Compile, or load from the disk cache, all that a tick of this scene needs."""
         if not self._is_begun:
             self._begin_steps()
         self._steps.prepare()
-        # Not what Snapshot keeps: up to Python 3.11 its ticks would wait until it is there.
         self._energy()
-        self.snapshot().computed_forces()
+        prepare_rows(self.instant())
 
     def prepare_ahead(self):
         """Compile, or load likewise, what the method may go over to later on; after prepare."""
