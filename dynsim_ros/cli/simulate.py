@@ -68,6 +68,7 @@ def _simulate(options, signals) -> int:
     # Imported here so that --help is quick.
     from ..bag.run_bag import new_path, RunBag
     from ..messages.scene_channels import scene_channels
+    from ..messages.tick_rows import TickRows
     from ..scene import load_scene
     from ..simulation.command_file import read_commands
     from ..simulation.error_estimate import estimate_error
@@ -81,9 +82,10 @@ def _simulate(options, signals) -> int:
                  f'{simulator.settings.integrator} at {simulator.settings.rate:g} Hz')
     simulator.prepare()
     channels = scene_channels(simulator.scene, simulator.layout)
+    rows = TickRows(channels, simulator.layout)
     signals.hold()
     bag = RunBag(path, simulator, channels, compression=options.compression, wait=True)
-    run = OfflineRun(simulator, commands, _Sink(bag, channels, progress))
+    run = OfflineRun(simulator, commands, _Sink(bag, channels, rows, progress))
     started = time.monotonic()
     try:
         status, error = _run(run, options.duration, signals)
@@ -120,20 +122,25 @@ def _run(run, duration, signals):
 
 
 class _Sink:
-    """Takes the snapshots and commands of a run into a bag."""
+    """Takes the ticks and commands of a run into a bag."""
 
-    def __init__(self, bag, channels, progress):
+    def __init__(self, bag, channels, rows, progress):
         self._bag = bag
-        self._channels = channels
+        self._others = [channel for channel in channels if channel.row is None]
+        self._rows = rows
+        self._all = rows.of()
         self._progress = progress
         self._next = 0.0
 
-    def snapshot(self, snapshot, tick_ns):
+    def tick(self, simulator):
         """Record what is due at a tick, and show how far the run is."""
-        time_ns = snapshot.time_ns
-        self._bag.put(time_ns, {channel.topic: channel.encode(snapshot, time_ns)
-                                for channel in self._channels
-                                if channel.is_due(snapshot.tick, tick_ns)})
+        time_ns, tick_ns = simulator.time_ns, simulator.settings.tick_ns
+        self._rows.fill(simulator.instant(), time_ns, self._all)
+        messages = {channel.topic: self._rows.message(i)
+                    for i, channel in enumerate(self._rows.channels)}
+        messages |= {channel.topic: channel.encode(simulator.snapshot(), time_ns)
+                     for channel in self._others if channel.is_due(simulator.tick, tick_ns)}
+        self._bag.put(time_ns, messages)
         if time.monotonic() >= self._next:
             self._next = time.monotonic() + 0.1
             self._progress.show(time_ns * 1e-9)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from .qos import Qos, STATE
-from .tick_rows import Row
+from .row import Row
 
 WORLD = 'world'
 _SECOND = 1_000_000_000

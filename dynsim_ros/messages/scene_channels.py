@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from .channel import Channel, WORLD
 from .markers import marker_channel
+from .row import Row
 from .template import Template
-from .tick_rows import Row
 from ..scene import Rigid
 from ..scene.orientation import to_ros
-from ..simulation.numbers import ENERGIES, Numbers
+from ..simulation.rows.tick_numbers import ENERGIES, Numbers
 
 __all__ = ['ENERGIES', 'scene_channels', 'wrench_kinds']
 

@@ -4,70 +4,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable
 import struct
 from typing import NamedTuple
 
 import numpy as np
 
-from .template import Template
-from ..simulation.numbers import Numbers
-from ..simulation.row_kernel import HEAD_SIZE, Instants, prepare_rows, RowTable
+from .channel import Channel
+from .row import STAMP
+from ..simulation.layout import Layout
+from ..simulation.rows.kernel import HEAD_SIZE, Instants, prepare_rows, RowTable
+from ..simulation.rows.tick_numbers import Numbers
 
-# What a row begins with, see row_kernel: a record of an MCAP file up to its data.
+# What a row begins with, see rows.kernel: a record of an MCAP file up to its data.
 _HEAD = struct.Struct('<BQHIQQ')
 assert _HEAD.size == HEAD_SIZE
-_SECONDS, _NANOSECONDS = 'header.stamp.sec', 'header.stamp.nanosec'
-
-
-@dataclass(frozen=True)
-class Row:
-    """
-    A message of fixed size that a kernel fills in.
-
-    template: its leaves are the stamp, if it has one, and those of `numbers`: {leaf: place of the
-    number in Numbers}. Raises ValueError for a leaf that is no float64, or without a number.
-    """
-
-    template: Template
-    numbers: Mapping[str, int]
-
-    def __post_init__(self):
-        """Check that every leaf is known and of the type that the kernel writes."""
-        types = dict.fromkeys(self.numbers, 'd')
-        if _SECONDS in self.template.places:
-            types.update({_SECONDS: 'i', _NANOSECONDS: 'I'})
-        found = {leaf: place.code for leaf, place in self.template.places.items()}
-        if found != types:
-            raise ValueError(f'{self.template.type_name}: its leaves are {found}, but '
-                             f'{types} are filled in')
 
 
 class Wanted(NamedTuple):
-    """Which rows are wanted, and what they need; made by TickRows.wanted."""
+    """Which rows are wanted, by number and as (rows,) bool, and what they need; see TickRows."""
 
+    numbers: tuple
     mask: np.ndarray
     with_forces: bool
     with_energies: bool
-    count: int
 
 
 class TickRows:
     """
     All messages of fixed size of a tick, one behind the other in a block of bytes.
 
-    channels: those Channels of a list that have a row, in their order; numbers: Numbers;
-    table: RowTable; size: bytes of a block; block: (size,) uint8, that of the instant filled in
-    last; blocks: (instants, size). Each message is padded to a multiple of four, as DDS does it, and stands behind the head
-    of its record in a bag. Use: `rows.fill(simulator.instant(), stamp_ns, wanted)`, then
-    `publisher.publish(rows.message(i))` and `bag.put_rows(rows, wanted)`.
+    channels: those Channels of a list that have a row, in their order; table: RowTable; size:
+    bytes of a block; block: (size,) uint8, that of the instant filled in last; blocks: (instants,
+    size). Each message is padded to a multiple of four, as DDS does it, and stands behind the head
+    of its record in a bag. To use it: wanted = rows.of(channels), once; at every tick
+    rows.fill(simulator.instant(), stamp_ns, wanted) and, of each row number i in wanted.numbers,
+    publisher.publish(rows.message(i)).
     """
 
-    def __init__(self, channels, numbers: Numbers):
-        """Lay out the rows of channels; numbers: those of the scene that the channels are of."""
+    def __init__(self, channels, layout: Layout):
+        """Lay out the rows of channels; layout: that of the scene whose channels they are."""
         self.channels = [channel for channel in channels if channel.row is not None]
-        self.numbers = numbers
         rows = [channel.row for channel in self.channels]
         sizes = [HEAD_SIZE + _padded(row.template.size) for row in rows]
         starts = np.concatenate([[0], np.cumsum(sizes, dtype=np.int64)])
@@ -76,7 +53,9 @@ class TickRows:
         self.spans = [(int(start) + HEAD_SIZE, int(end))
                       for start, end in zip(starts[:-1], starts[1:])]
         self._blank = np.frombuffer(b''.join(map(_blank, rows)), np.uint8)
-        self._arrays = numbers.arrays()
+        self._numbers = Numbers(layout)
+        self._arrays = self._numbers.arrays()
+        self._wanted: dict[tuple, Wanted] = {}
         self._blocks = self.new_blocks(1)
         self._use(self._blocks)
         self._kernel, self._model = None, None
@@ -85,14 +64,17 @@ class TickRows:
         """Return blocks for so many instants, with all that never changes: (count, size)."""
         return np.tile(self._blank, (count, 1))
 
-    def wanted(self, rows: Iterable[int]) -> Wanted:
-        """Return what `fill` is to build: rows, by their number in `channels`."""
-        mask = np.zeros(len(self.channels), bool)
-        mask[list(rows)] = True
-        places = {place for channel, is_wanted in zip(self.channels, mask) if is_wanted
-                  for place in channel.row.numbers.values()}
-        return Wanted(mask, any(map(self.numbers.is_force, places)),
-                      any(map(self.numbers.is_energy, places)), int(mask.sum()))
+    def of(self, channels: Iterable[Channel] | None = None) -> Wanted:
+        """Return what `fill` is to build: the rows of some of `channels`, None for all."""
+        topics = {channel.topic for channel in (self.channels if channels is None else channels)}
+        numbers = tuple(i for i, channel in enumerate(self.channels) if channel.topic in topics)
+        if numbers not in self._wanted:
+            mask = np.zeros(len(self.channels), bool)
+            mask[list(numbers)] = True
+            places = [place for i in numbers for place in self.channels[i].row.numbers.values()]
+            self._wanted[numbers] = Wanted(numbers, mask, any(map(self._numbers.is_force, places)),
+                                           any(map(self._numbers.is_energy, places)))
+        return self._wanted[numbers]
 
     def fill(self, instants: Instants, stamp_ns: int, wanted: Wanted):
         """
@@ -143,7 +125,7 @@ def _table(rows, starts):
     for row, start in zip(rows, starts + HEAD_SIZE):
         places = row.template.places
         stamp.append([start + places[leaf].start if leaf in places else -1
-                      for leaf in (_SECONDS, _NANOSECONDS)])
+                      for leaf in STAMP])
         place += [start + places[leaf].start for leaf in row.numbers]
         number += row.numbers.values()
         first.append(len(place))

@@ -25,7 +25,7 @@ _CACHES_KEPT = 4
 
 def _digest():
     package = Path(__file__).parent.parent
-    sources = sorted(path for room in ('physics', 'integrators')
+    sources = sorted(path for room in ('physics', 'integrators', 'simulation/rows')
                      for path in (package / room).rglob('*.py'))
     return hashlib.sha256(b''.join(path.read_bytes() for path in sources)).hexdigest()[:16]
 

@@ -103,9 +103,8 @@ class Run:
             return
         if self._options['publish_clock']:
             self._clock.publish(self.stamp_ns)
-        begin, tick_ns = time.monotonic_ns(), self.simulator.settings.tick_ns
-        messages = self.topics.publish(self.simulator.snapshot(), self.stamp_ns, tick_ns,
-                                       self.bag is not None)
+        begin = time.monotonic_ns()
+        messages = self.topics.publish(self.simulator, self.stamp_ns, self.bag is not None)
         built = time.monotonic_ns()
         self.record(messages)
         self.work['publish'] += built - begin

@@ -23,6 +23,7 @@ from .ticker import Ticker
 from .topics import Topics
 from ..messages.epoch import EPOCH
 from ..messages.scene_channels import scene_channels
+from ..messages.tick_rows import TickRows
 from ..scene import SceneError
 from ..simulation import Simulator
 
@@ -79,7 +80,8 @@ class SimNode(Node):
 
     def _tie(self, simulator):
         """Make what publishes the run, what it ticks in and what commands it."""
-        topics = Topics(self, scene_channels(simulator.scene, simulator.layout), self.audience,
+        channels = scene_channels(simulator.scene, simulator.layout)
+        topics = Topics(self, channels, TickRows(channels, simulator.layout), self.audience,
                         self.parameters.own)
         self.run = Run(simulator, topics, self._clock_publisher, self.parameters.own, self)
         self.ticker = Ticker(self.run, self.pacer,

@@ -9,19 +9,21 @@ from .message_types import message_class
 from .publish_rates import every_of
 from .qos import profile
 from .schedule import Schedule
+from ..messages.tick_rows import TickRows
 
 
 class Topics:
     """
     Publishes the messages of a list of Channels, as the bytes that are also recorded.
 
-    Topics are relative to the node (~/). audience: Audience of these and other publishers;
-    options: dict of the node's own parameters, always up to date.
+    Topics are relative to the node (~/). rows: TickRows of the channels; audience: Audience of
+    these and other publishers; options: dict of the node's own parameters, always up to date.
     skipped: messages that were due but not built; built: those that were.
     """
 
-    def __init__(self, node, channels, audience: Audience, options):
+    def __init__(self, node, channels, rows: TickRows, audience: Audience, options):
         self.channels = channels
+        self.rows = rows
         self.skipped = self.built = 0
         self._node = node
         self._audience = audience
@@ -59,14 +61,18 @@ class Topics:
         """Count what was due at the ticks first + 1 to last, at which nobody wanted anything."""
         self.skipped += self.schedule(tick_ns, False).due_between(first, last)
 
-    def publish(self, snapshot, stamp_ns, tick_ns, recording):
+    def publish(self, simulator, stamp_ns, recording):
         """Publish what is due at a tick; return {topic: CDR bytes} of what was built."""
-        schedule, built = self.schedule(tick_ns, recording), {}
-        tick = snapshot.tick
-        for channel, publisher, every in schedule.wanted:
-            if tick % every:
-                continue
-            data = channel.encode(snapshot, stamp_ns)
+        tick = simulator.tick
+        schedule, built = self.schedule(simulator.settings.tick_ns, recording), {}
+        due = [(channel, publisher) for channel, publisher, every in schedule.wanted
+               if tick % every == 0]
+        rows = self.rows.of([channel for channel, _ in due if channel.row is not None])
+        self.rows.fill(simulator.instant(), stamp_ns, rows)
+        numbers = iter(rows.numbers)
+        for channel, publisher in due:
+            data = (channel.encode(simulator.snapshot(), stamp_ns) if channel.row is None
+                    else self.rows.message(next(numbers)))
             built[channel.topic] = data
             if publisher is not None:
                 publisher.publish(data)

@@ -71,11 +71,16 @@ def _end(scene, settings, commands, duration):
 
 
 class _Last:
-    """Takes the snapshots of a run and keeps the last one."""
+    """Takes the ticks of a run and keeps the last state."""
 
-    def snapshot(self, snapshot, tick_ns):
-        """Keep a snapshot, in place of the one before."""
-        self.state = snapshot
+    def tick(self, simulator):
+        """Keep a simulator, which goes on."""
+        self._simulator = simulator
+
+    @property
+    def state(self):
+        """Return the last Snapshot."""
+        return self._simulator.snapshot()
 
     def command(self, time_ns, command):
         """Take a command that took effect."""

@@ -20,8 +20,8 @@ class OfflineRun:
     """
     Runs a simulator through timed commands.
 
-    commands: [(time_ns, command)] in order of time; sink: has snapshot(snapshot, tick_ns), called
-    at every tick, and command(time_ns, command), called for every command that took effect.
+    commands: [(time_ns, command)] in order of time; sink: has tick(simulator), called at every
+    tick, and command(time_ns, command), called for every command that took effect.
     What remains in commands after a run is later than its end.
     """
 
@@ -38,11 +38,11 @@ class OfflineRun:
         """
         simulator, sink = self._simulator, self._sink
         end = simulator.time_ns + round(duration * SECOND)
-        sink.snapshot(simulator.snapshot(), simulator.settings.tick_ns)
+        sink.tick(simulator)
         while simulator.time_ns < end and not is_stopped():
             self._command()
             simulator.advance_tick()
-            sink.snapshot(simulator.snapshot(), simulator.settings.tick_ns)
+            sink.tick(simulator)
 
     def _command(self):
         """Carry out the commands whose time has come."""

@@ -11,7 +11,7 @@ from .anchors import Anchors
 from .changes import changed
 from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
 from .layout import Layout
-from .row_kernel import Instants, prepare_rows
+from .rows.kernel import Instants, prepare_rows
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
 from .trajectory import Trajectory

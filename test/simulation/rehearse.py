@@ -6,13 +6,13 @@ import json
 
 from dynsim_ros.integrators import METHODS
 from dynsim_ros.physics.energies import energies
-from dynsim_ros.physics.wrenches import wrenches
 from dynsim_ros.scene import Particle, Scene
 from dynsim_ros.simulation import Simulator
 from dynsim_ros.simulation.rehearsal import Rehearsal
+from dynsim_ros.simulation.rows.kernel import fill_rows
 
 METHOD = 'explicit_euler'
-KERNELS = {METHOD: METHODS[METHOD].advance, 'energies': energies, 'wrenches': wrenches}
+KERNELS = {METHOD: METHODS[METHOD].advance, 'energies': energies, 'fill_rows': fill_rows}
 
 scene = Scene(name='fall', bodies=[Particle(name='p', mass=1.0)], gravity=9.81)
 simulator = Simulator(scene, integrator=METHOD)

@@ -21,8 +21,9 @@ class Sink:
     def __init__(self):
         self.snapshots, self.commands = [], []
 
-    def snapshot(self, snapshot, tick_ns):
-        self.snapshots.append((snapshot.time_ns, tick_ns, snapshot.state.tobytes()))
+    def tick(self, simulator):
+        self.snapshots.append((simulator.time_ns, simulator.settings.tick_ns,
+                               simulator.snapshot().state.tobytes()))
 
     def command(self, time_ns, command):
         self.commands.append((time_ns, command))

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .numbers import NumberArrays
+from .tick_numbers import NumberArrays
 from .unaligned import put_number
-from ..integrators.entry import entry
-from ..physics.energies import energies
-from ..physics.jit import formula, kernel
-from ..physics.wrenches import wrenches
-from ..physics.state import counts, work_at
+from ...integrators.entry import entry
+from ...physics.energies import energies
+from ...physics.jit import formula, kernel
+from ...physics.state import counts, work_at
+from ...physics.wrenches import wrenches
 
 # What a row begins with, as a record does in an MCAP file: whether there is a message, how long
 # the record is, channel and sequence number, then the time twice, then the message.
