@@ -29,14 +29,14 @@ from .stormer import stormer
 from ..physics.jit import formula, kernel
 from ..physics.lanes import COUNT
 from ..physics.motion import rates
-from ..physics.state import counts, moving_size, normalise
+from ..physics.state import counts, moving_size, normalise, omega_at, quaternion_at
 
 # The clock: whole seconds, end and length of the last step, length of the next one, binary
 # logarithm of the last error estimate over the tolerance, whether the dense output of the last
 # step is built; for how many steps the watch has seen what it waits for, and the steps have become
-# shorter; what rounding leaves of the error estimate of a step.
-BASE, END, STEP, NEXT, LAST_ERROR, DENSE, WATCHED, SHRUNK, FLOOR = range(9)
-CLOCK_SIZE = 9
+# shorter; what rounding leaves of the error estimate of a step; for how long all has been calm.
+BASE, END, STEP, NEXT, LAST_ERROR, DENSE, WATCHED, SHRUNK, FLOOR, CALM = range(10)
+CLOCK_SIZE = 10
 # Length of the last step before the first one.
 TO_BEGIN = -1.0
 # What is counted: steps, rejected steps, evaluations of the right-hand side in a row, steps that
@@ -44,7 +44,7 @@ TO_BEGIN = -1.0
 STEPS, REJECTED, EVALUATIONS, ROUNDED = range(4)
 COUNTS_SIZE = 4
 
-REACHED, BUDGET_SPENT, STEP_TOO_SHORT, SWITCH = range(4)
+REACHED, BUDGET_SPENT, STEP_TOO_SHORT, SWITCH, AT_REST = range(5)
 
 _LOG_SAFETY, _LOG_AT_ONCE = math.log2(0.9), math.log2(0.6)
 _SLOWEST, _FASTEST = 0.1, 5.0
@@ -57,6 +57,10 @@ _PERSISTENCE = 20.0
 _PATIENCE, _SHORT_PATIENCE = 10.0, 3.0
 # Units of the last place that rounding leaves of an error estimate.
 _UNITS = 20.0 * 2.0 ** -52
+# How long a run has to be calm before it is at rest [s].
+CALM_TIME = 1.0
+# Where no velocity is above something, vibrations have accelerations up to this times it [1/s].
+_FAST = 100.0
 # The tolerance of a step is this part of the one that is asked for, because errors add up.
 MARGIN = 0.02
 # Rounding makes no error estimate larger than this.
@@ -143,6 +147,31 @@ def watched(watch, step, seen):
 
 
 @formula
+def is_calm(first, end, rate, calm):
+    """Return whether no rate from `first` to before `end` is above `calm`."""
+    for i in range(first, end):
+        if not abs(rate[i]) <= calm:
+            return False
+    return True
+
+
+@formula
+def calm_for(bodies, rigid, rate, calm, before):
+    """
+    Return for how long all has been calm; before: how long, if it is now [s].
+
+    It is as long as no velocity is above `calm`, and no acceleration above what fast vibrations
+    of such velocities have.
+    """
+    quaternions, omegas = quaternion_at(bodies), omega_at(bodies, rigid)
+    if (is_calm(0, 3 * bodies, rate, calm) and is_calm(quaternions, omegas, rate, calm)
+            and is_calm(3 * bodies, quaternions, rate, _FAST * calm)
+            and is_calm(omegas, omegas + 3 * rigid, rate, _FAST * calm)):
+        return before
+    return 0.0
+
+
+@formula
 def place_in_step(grid, number, clock, per_half):
     """
     Return where an instant of the grid lies in the last step: -1: start, 1: end.
@@ -210,6 +239,7 @@ def begin(model, drive, bodies, rigid, size, power, tolerance, fastest, clock, y
     clock[STEP] = 0.0
     clock[DENSE] = 0.0
     clock[WATCHED] = 0.0
+    clock[CALM] = 0.0
     clock[LAST_ERROR] = 0.0
     if clock[NEXT] == 0.0:
         h = max(1e-3 / (error_norm(bodies, rigid, y, rate) + 1e-6), 1e-15)
@@ -224,18 +254,18 @@ def begin(model, drive, bodies, rigid, size, power, tolerance, fastest, clock, y
 
 
 @kernel
-def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, watch, clock,
+def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, watch, calm, clock,
             counted, states, memory, dense, grid):
     """
     Take steps until the grid is filled, or `limit` is reached.
 
     power: of h in the error estimate; tolerance: of the run, in the norm of error_norm; fastest:
     see begin; limit: [ns] since the beginning: a step ends there, and none goes on; budget: the
-    most attempts;
-    watch: steps that stay longer than this [s], or where it is negative shorter than -watch, end
-    the run with SWITCH; clock, counted: see above; states: (4, size) start and end of the last
-    step, the rates there; dense: (size * DENSE_SIZE,). Returns REACHED, BUDGET_SPENT,
-    STEP_TOO_SHORT or SWITCH.
+    most attempts; watch: steps that stay longer than this [s], or where it is negative shorter
+    than -watch, end the run with SWITCH; calm: a run that has been calm for CALM_TIME, see
+    calm_for, ends with AT_REST; 0: none does; clock, counted: see above; states: (4, size) start
+    and end of the last step, the rates there; dense: (size * DENSE_SIZE,). Returns REACHED,
+    BUDGET_SPENT, STEP_TOO_SHORT, SWITCH or AT_REST.
     """
     bodies, rigid = counts(model)
     size = moving_size(drive.works, bodies, rigid)
@@ -268,6 +298,10 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
         if clock[WATCHED] >= (_PATIENCE if watch > 0.0 else _SHORT_PATIENCE):
             clock[WATCHED] = 0.0
             status = SWITCH
+            break
+        if clock[CALM] >= CALM_TIME:
+            clock[CALM] = 0.0
+            status = AT_REST
             break
         for i in range(size):
             y[i] = y_new[i]
@@ -344,6 +378,8 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
         begin_rates(tableaux.stiff, model, drive, clock[BASE] + clock[END], y_new,
                     rate_new)
         counted[EVALUATIONS] += 1
+        if calm > 0.0:
+            clock[CALM] = calm_for(bodies, rigid, rate_new, calm, clock[CALM] + h)
     store(size, y, states[0])
     store(size, y_new, states[1])
     store(size, rate, states[2])

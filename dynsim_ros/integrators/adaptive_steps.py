@@ -85,7 +85,7 @@ class AdaptiveSteps(Walk):
     """
 
     def __init__(self, method, tolerance, model, drive, size, springs, watch=0.0):
-        self.method, self.tolerance, self.watch = method, tolerance, watch
+        self.method, self.tolerance, self.watch, self.calm = method, tolerance, watch, 0.0
         self._memory = new_memory(size, springs)
         self._model, self._drive = model, drive
         self.clock, self.counts = np.zeros(CLOCK_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
@@ -131,8 +131,8 @@ class AdaptiveSteps(Walk):
     def run(self, limit, grid, budget=BUDGET):
         """Take steps until the grid is filled or the limit reached; return what ended them."""
         arguments = (self._model, self._drive, self.method.tableaux, self.method.power,
-                     self.tolerance, self._fastest, limit, budget, self.watch, self.clock,
-                     self.counts, self.states, self._memory, self._dense, grid)
+                     self.tolerance, self._fastest, limit, budget, self.watch, self.calm,
+                     self.clock, self.counts, self.states, self._memory, self._dense, grid)
         if self._advance is None:
             self._advance = entry(advance, *arguments)
         return self._advance(*arguments)

@@ -12,14 +12,18 @@ that a repeated run decides alike.
 
 import math
 
-from .adaptive import NEXT, STEPS, SWITCH
-from .adaptive_steps import AdaptiveSteps, Walk
+from .adaptive import AT_REST, BASE, END, NEXT, REACHED, STEPS, SWITCH
+from .adaptive_steps import AdaptiveSteps, FAR, Walk
+from .closed_scene import comes_to_rest
 from .stiffness import held_back_step
 
 # The first step that a stiff method tries, over what it has to be to be worth it.
 _AMBITION = 1.6
 # Steps until the next trial: at first, and at most.
 _SHORTEST_WAIT, _LONGEST_WAIT = 32, 4096
+# A run is calm when no velocity is above this part of the tolerance [1/s]; it is then at rest
+# where the air stops what still moves within the inverse of that.
+_CALM = 1e-2
 # Stiff steps in a row after which a trial was a success.
 _SUCCESS = 20
 
@@ -41,6 +45,7 @@ class AutoSteps(Walk):
         self.stiff = None
         self.current = self.explicit
         self._wait, self._next_trial, self._entered = _SHORTEST_WAIT, 0, 0
+        self._model, self._drive, self._asleep_at = model, drive, None
 
     @property
     def counts(self):
@@ -50,6 +55,7 @@ class AutoSteps(Walk):
     def begin(self, time_ns, state):
         """Begin at an instant [ns], in a state: (size,)."""
         self.current.begin(time_ns, state)
+        self._asleep_at, self.explicit.calm = None, _CALM * self.explicit.tolerance
 
     def reset(self):
         """Forget all: the next beginning is the first one."""
@@ -71,20 +77,48 @@ class AutoSteps(Walk):
             stiff.prepare()
 
     def go(self, limit, grid):
-        """Take steps as AdaptiveSteps.run does, with whichever method is the better one."""
+        """
+        Take steps as AdaptiveSteps.run does, with whichever method is the better one.
+
+        Where the run has come to rest, no more are taken: the state is held.
+        """
+        if not self._is_asleep():
+            self.current.check(self._run(limit, grid), self.budget)
+        if self._is_asleep() and grid.first < FAR:
+            grid.states[grid.done[0]:] = self.current.states[1]
+            grid.done[0] = len(grid.states)
+
+    def _run(self, limit, grid):
+        """Take steps; return what ended them."""
         left = self.budget
         while True:
             at_work, before = self.current, self.current.attempts
             status = at_work.run(limit, grid, left)
             left -= (at_work.attempts - before) * (self._cost if at_work is self.stiff else 1)
             left = int(left)
-            if status != SWITCH:
-                break
-            if at_work is self.stiff:
+            if status == AT_REST:
+                self._fall_asleep()
+                if self._is_asleep():
+                    return REACHED
+            elif status != SWITCH:
+                return status
+            elif at_work is self.stiff:
                 self._hand_back()
             elif self.explicit.counts[STEPS] >= self._next_trial:
                 self._try_stiff(limit, grid)
-        self.current.check(status, self.budget)
+
+    def _is_asleep(self):
+        # A step that went past a command has been taken back: that was before.
+        clock = self.current.clock
+        return self._asleep_at is not None and clock[BASE] + clock[END] >= self._asleep_at
+
+    def _fall_asleep(self):
+        """Hold the state from here on, if it is one of rest."""
+        clock = self.explicit.clock
+        if comes_to_rest(self._model, self._drive, self.explicit.states[1], 1.0 / _CALM):
+            self._asleep_at = clock[BASE] + clock[END]
+        else:
+            self.explicit.calm = 0.0
 
     def _hand_back(self):
         if self.stiff.counts[STEPS] - self._entered >= _SUCCESS:

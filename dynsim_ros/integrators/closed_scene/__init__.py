@@ -24,8 +24,9 @@ any rotation of any body               no moment acts on it
 =====================================  ==========================================================
 """
 
+from .equilibrium import comes_to_rest
 from .evaluate import evaluate
 from .motion import AT_REST
 from .recognise import Recogniser
 
-__all__ = ['AT_REST', 'Recogniser', 'evaluate']
+__all__ = ['AT_REST', 'Recogniser', 'comes_to_rest', 'evaluate']

@@ -15,6 +15,7 @@ import math
 
 import numpy as np
 
+from .hold import holds_of
 from ..closed_form import cancels, spring_size
 from ...physics.motion import apply_forces
 from ...physics.rotation import rotate
@@ -53,17 +54,58 @@ def is_equilibrium(model, drive, start, holds):
     return not left.any() or _is_rounding(model, drive, start, holds, left)
 
 
+def comes_to_rest(model, drive, state, longest):
+    """
+    Return whether what still moves in a state (size,) is to come to rest where it is.
+
+    It is where the place is stable and the air stops each body within `longest` [s].
+    """
+    holds = holds_of(model, drive.anchors)
+    if any(hold.anchor is not None and any(hold.anchor.velocity) for hold in holds):
+        return False
+    if _is_turned(model, drive) or not _is_stopped(model, longest):
+        return False
+    return _is_stable(model.rigid, holds, _bodies(model, state))
+
+
+def _is_stopped(model, longest):
+    """Return whether the air alone stops each body within a time [s]."""
+    air = model.air
+    if air is None or air.linear_drag is None:
+        return False
+    if max(model.mass) > longest * air.linear_drag:
+        return False
+    if model.rigid == 0:
+        return True
+    inertias = [] if model.round_inertia is None else [max(model.round_inertia)]
+    if model.inertia is not None:
+        # No moment of inertia is larger than the trace.
+        inertias.append(max(matrix.trace() for matrix in model.inertia))
+    return air.rotational_drag is not None and max(inertias) <= longest * air.rotational_drag
+
+
+def _is_turned(model, drive):
+    """Return whether a torque is commanded, or the air whirls."""
+    torque_at = 6 * len(model.mass) + 4 * model.rigid
+    if drive.pushes is not None and drive.pushes[torque_at:].any():
+        return True
+    return model.air is not None and model.air.angular_velocity is not None
+
+
+def _bodies(model, start):
+    bodies = len(model.mass)
+    return [_Body(tuple(start[3 * i:3 * i + 3].tolist()),
+                  tuple(start[6 * bodies + 4 * i:6 * bodies + 4 * i + 4].tolist()))
+            for i in range(bodies)]
+
+
 def _is_rounding(model, drive, start, holds, left):
     """Return whether what is left of forces and moments is rounding, in a stable place."""
     bodies, rigid = len(model.mass), model.rigid
     torque_at = 6 * bodies + 4 * rigid
-    if drive.pushes is not None and drive.pushes[torque_at:].any():
+    if _is_turned(model, drive):
         return False
-    if model.air is not None and model.air.rotational_drag and model.air.angular_velocity:
-        return False
-    things = [_Body(tuple(start[3 * i:3 * i + 3].tolist()),
-                    tuple(start[6 * bodies + 4 * i:6 * bodies + 4 * i + 4].tolist()))
-              for i in range(bodies)]
+    things = _bodies(model, start)
     _add_sizes(model, drive, holds, things)
     for i, thing in enumerate(things):
         if not cancels(tuple(left[3 * (bodies + i):3 * (bodies + i) + 3].tolist()),
@@ -111,6 +153,8 @@ def _is_stable(rigid, holds, things):
             return False
         curvature += more
         largest += abs(more).diagonal()
+    # one scale for all directions: in one that is neutral there is nothing but rounding
+    largest = largest.reshape(-1, 3).max(axis=1).repeat(3)
     largest[largest == 0.0] = 1.0
     scaling = 1.0 / np.sqrt(largest)
     return _is_positive(curvature * scaling * scaling[:, np.newaxis] + _NEUTRAL * np.eye(size))
