@@ -9,16 +9,20 @@ from collections.abc import Mapping, Sequence
 import threading
 import time
 
+import numpy as np
+
+from .pack_rows import RowPlan
+from .tick_queue import TickQueue
 from .writer import BagWriter
 from ..messages.qos import Qos, STATE
+from ..messages.tick_rows import TickRows, Wanted
+from ..simulation.rows.kernel import PRESENT
 
-# How often the thread looks for work, and how long a message may stay outside the file, in s.
-_PERIOD = 0.05
+# How often the thread looks for work [s]. What it finds goes to the file at once if it is worth
+# a chunk of its own [bytes], and in any case before it has waited for too long [s].
+_PERIOD = 0.025
+_WORTH = 16 * 1024
 _FLUSH_PERIOD = 0.5
-
-# The interpreter is handed back to the tick after so many messages (about 0.3 ms of work).
-_SLICE = 64
-_YIELD = 20e-6
 
 
 class Recorder:
@@ -42,7 +46,10 @@ class Recorder:
         self._writer = writer
         self._capacity = capacity
         self.wait = wait
+        # What is no row, each with the number of ticks that were put before it.
         self._queue: deque = deque()
+        self._ticks: TickQueue | None = None
+        self._plan: RowPlan | None = None
         # Each is counted up by one thread alone; what is between them waits.
         self._handed_over = 0
         self._taken = 0
@@ -76,12 +83,40 @@ class Recorder:
         keep: for what must not be lost even where there is no room. Returns at once; to be
         called from one thread only. After `close` messages are lost.
         """
-        if self._is_full() or self._closing:
-            if not self._make_room() and (self._closing or not keep):
-                self._overflow += len(messages)
-                return
+        if self._has_no_room(len(messages), keep):
+            return
         self._handed_over += len(messages)
-        self._queue.append((stamp_ns, messages))
+        self._queue.append((self._ticks.put_count if self._ticks else 0, stamp_ns, messages))
+
+    def declare_rows(self, rows: TickRows, channel_ids: Sequence[int]):
+        """Let ticks of some TickRows be put; channel_ids: of their rows; once, before put_rows."""
+        starts, ends = (np.array(part, np.int64) for part in (
+            rows.table.start, [end for _, end in rows.spans]))
+        plan = RowPlan(starts, ends, np.array(channel_ids, np.int64))
+        with self._writer_lock:
+            self._writer.declare_rows(plan)
+        self._plan, self._ticks = plan, TickQueue(rows.size)
+
+    def put_rows(self, rows: TickRows, stamp_ns: int, wanted: Wanted):
+        """
+        Hand over what was filled in last: the wanted rows of one instant.
+
+        As `put`: they follow what was put before, and come before what is put later.
+        """
+        count = len(wanted.numbers)
+        if ((self._handed_over - self._taken >= self._capacity or self._closing)
+                and self._has_no_room(count, False)):
+            return
+        self._handed_over += count
+        self._ticks.put(rows.view, stamp_ns)
+
+    def put_many_rows(self, rows: TickRows, stamps: np.ndarray, wanted: Wanted):
+        """Hand over likewise all instants filled in last; stamps: (instants,) int64 [ns]."""
+        count = len(wanted.numbers) * len(stamps)
+        if self._has_no_room(count, False):
+            return
+        self._handed_over += count
+        self._ticks.put_many(rows.blocks, stamps)
 
     def add_channel(self, topic: str, type_name: str, qos: Qos = STATE) -> int:
         """Declare a topic, as `BagWriter.add_channel` does."""
@@ -101,8 +136,9 @@ class Recorder:
         self._closing = True
         self._wake.set()
         self._thread.join()
-        while self._queue:
-            self._overflow += len(self._queue.popleft()[1])
+        # What came while the file was being finished.
+        self._overflow += self._handed_over - self._taken
+        self._handed_over = self._taken
 
     def __enter__(self) -> Recorder:
         """Return the recorder."""
@@ -111,6 +147,15 @@ class Recorder:
     def __exit__(self, *_):
         """Close the bag."""
         self.close()
+
+    def _has_no_room(self, count: int, keep: bool) -> bool:
+        """Tell whether so many messages cannot be taken; they are counted as lost then."""
+        if self._handed_over - self._taken < self._capacity and not self._closing:
+            return False
+        if self._make_room() or (keep and not self._closing):
+            return False
+        self._overflow += count
+        return True
 
     def _make_room(self) -> bool:
         """Wait for the thread if that is wanted; tell whether there is room now."""
@@ -124,29 +169,42 @@ class Recorder:
         return self._handed_over - self._taken >= self._capacity
 
     def _run(self):
-        """Write batches until the recorder is closed and nothing waits any more."""
+        """Write what waits, again and again, until the recorder is closed."""
         flushed = time.monotonic()
         while not self._closing:
             self._wake.wait(_PERIOD)
             self._wake.clear()
             self._drain()
-            if time.monotonic() - flushed > _FLUSH_PERIOD:
+            if (self._writer.pending_bytes >= _WORTH
+                    or time.monotonic() - flushed > _FLUSH_PERIOD):
                 self._flush()
                 flushed = time.monotonic()
         self._drain()
         self._attempt(self._writer.close)
 
     def _drain(self):
-        """Write everything that waits, letting other threads run between slices."""
-        written = 0
-        while self._queue:
-            stamp_ns, messages = self._queue.popleft()
-            self._attempt(self._write, stamp_ns, messages, count=len(messages))
-            self._taken += len(messages)
-            written += len(messages)
-            if written >= _SLICE and not self._closing:
-                written = 0
-                time.sleep(_YIELD)
+        """Write everything that waits, ticks and other messages in the order they came in."""
+        while True:
+            # Asked in this order: what is no row and was put before a tick is seen with it.
+            ticks = self._ticks.put_count if self._ticks else 0
+            after, stamp_ns, messages = self._queue[0] if self._queue else (ticks, 0, None)
+            self._drain_ticks(min(ticks, after))
+            if messages is None:
+                return
+            if after <= ticks:
+                self._queue.popleft()
+                self._attempt(self._write, stamp_ns, messages, count=len(messages))
+                self._taken += len(messages)
+
+    def _drain_ticks(self, end: int):
+        """Write the ticks that were put as the first `end` ones."""
+        ticks = self._ticks
+        while ticks and ticks.taken_count < end:
+            blocks, stamps = ticks.take(end)
+            count = int((blocks[:, self._plan.start] == PRESENT).sum())
+            self._attempt(self._writer.write_rows, blocks, stamps, count=count)
+            ticks.release(len(blocks))
+            self._taken += count
 
     def _write(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]]):
         """Append the messages of one instant."""

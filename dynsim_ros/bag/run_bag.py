@@ -29,12 +29,12 @@ class RunBag:
 
     channels: what is recorded besides the epoch and commands; node: full name of the node;
     resolve(topic): returns the full name of a topic, None to put relative ones below the node;
-    parameters: {name: value} beside those of scene and settings. The messages of a tick are
-    handed over as {topic: CDR bytes}. Raises OSError or ValueError if the file cannot be made;
+    parameters: {name: value} beside those of scene and settings; rows: TickRows of the channels
+    that have a row. Raises OSError or ValueError if the file cannot be made;
     it is never overwritten.
     """
 
-    def __init__(self, path, simulator, channels, *, node='/dynsim', resolve=None,
+    def __init__(self, path, simulator, channels, rows, *, node='/dynsim', resolve=None,
                  compression='zstd', parameters=None, wait=False):
         """Create the file and write down how the run stands."""
         self.path = Path(path).expanduser()
@@ -52,6 +52,13 @@ class RunBag:
         # Latched: who reads the bag is told it first, as who subscribes is.
         self._latched = {EPOCH.topic: EPOCH.encode(simulator.snapshot(), None)}
         self.recorder = Recorder(writer, wait=wait)
+        self.recorder.declare_rows(rows, [self._ids[channel.topic] for channel in rows.channels])
+
+    def put_rows(self, rows, stamp_ns, wanted):
+        """Record the wanted rows of the instant that TickRows were filled in with last."""
+        if self._latched:
+            self._put(stamp_ns, [])
+        self.recorder.put_rows(rows, stamp_ns, wanted)
 
     def put(self, stamp_ns, messages):
         """Record {topic: CDR bytes} at a time [ns]."""

@@ -8,20 +8,19 @@ from collections.abc import Mapping
 import os
 from pathlib import Path
 
-from mcap.writer import CompressionType, Writer
+import numpy as np
 
-from .output import Output
+from .mcap_chunk import Chunk
+from .mcap_file import McapFile
+from .pack_rows import RowPlan
 from ..messages.definitions import definition
 from ..messages.qos import Qos, STATE
 
-COMPRESSIONS = {
-    'zstd': CompressionType.ZSTD, 'lz4': CompressionType.LZ4, 'none': CompressionType.NONE}
+# As MCAP names them.
+COMPRESSIONS = {'zstd': 'zstd', 'lz4': 'lz4', 'none': ''}
 
-# Of a program that is killed at most the chunk in progress is lost.
-CHUNK_SIZE = 64 * 1024
-
-# Record header and fixed fields of a message in a chunk.
-_MESSAGE_OVERHEAD = 31
+# Messages of about so many bytes are compressed and indexed together.
+CHUNK_SIZE = 256 * 1024
 
 
 class BagWriter:
@@ -49,47 +48,58 @@ class BagWriter:
             raise ValueError(f'chunk size {chunk_size} bytes is less than 1 byte')
         self.path = Path(path)
         self.message_count = 0
-        self._chunk_size = chunk_size
-        self._chunk_bytes = 0
-        self._chunk_messages = 0
         self._last_stamp = 0
         self._schemas: dict[str, int] = {}
         self._failed = False
-        self._output = Output(self.path)
-        # Chunks are ended here by flush(), which is what tells how much is safe in the file.
-        self._writer = Writer(
-            self._output, chunk_size=2 ** 62, compression=COMPRESSIONS[compression])
-        self._guarded(self._writer.start, profile='ros2', library=library)
+        self._chunk = Chunk(chunk_size)
+        self._file: McapFile | None = McapFile(self.path, COMPRESSIONS[compression], library)
 
     @property
     def pending(self) -> int:
         """Return the number of messages in the chunk in progress, not yet in the file."""
-        return self._chunk_messages
+        return self._chunk.count
+
+    @property
+    def pending_bytes(self) -> int:
+        """Return how many bytes these are, before compression."""
+        return self._chunk.size
 
     def add_channel(self, topic: str, type_name: str, qos: Qos = STATE) -> int:
         """Declare a topic of an installed message type; return the id to write to it with."""
         described = definition(type_name)
         if type_name not in self._schemas:
-            self._schemas[type_name] = self._writer.register_schema(
+            self._schemas[type_name] = self._file.add_schema(
                 type_name, 'ros2msg', described.text.encode())
         metadata = {'offered_qos_profiles': qos.offered_qos_profiles()}
         if described.type_hash:
             metadata['topic_type_hash'] = described.type_hash
-        return self._writer.register_channel(topic, 'cdr', self._schemas[type_name], metadata)
+        return self._file.add_channel(topic, self._schemas[type_name], metadata)
 
     def write(self, channel_id: int, stamp_ns: int, data: bytes):
         """Append a message at a time in ns; raises ValueError for a time before the last one."""
-        if stamp_ns < self._last_stamp:
-            raise ValueError(f'{self.path}: a message at {stamp_ns} ns cannot follow one at '
-                             f'{self._last_stamp} ns: times in a bag never go back')
         self._check_usable()
-        self._last_stamp = stamp_ns
-        self._writer.add_message(channel_id, stamp_ns, data, stamp_ns)
+        self._advance(stamp_ns, stamp_ns)
+        self._chunk.add(channel_id, stamp_ns, data)
         self.message_count += 1
-        self._chunk_messages += 1
-        self._chunk_bytes += len(data) + _MESSAGE_OVERHEAD
-        if self._chunk_bytes > self._chunk_size:
+        if self._chunk.size >= self._chunk.capacity:
             self.flush()
+
+    def declare_rows(self, plan: RowPlan):
+        """Let ticks with such rows be written; once."""
+        self._chunk.declare_rows(plan)
+
+    def write_rows(self, blocks: np.ndarray, stamps: np.ndarray):
+        """Append the rows of ticks: blocks (ticks, bytes) uint8, stamps (ticks,) [ns]."""
+        self._check_usable()
+        if (np.diff(stamps) < 0).any():
+            raise ValueError(f'{self.path}: times in a bag never go back')
+        self._advance(int(stamps[0]), int(stamps[-1]))
+        while len(blocks):
+            ticks, messages = self._chunk.add_rows(blocks, stamps)
+            self.message_count += messages
+            blocks, stamps = blocks[ticks:], stamps[ticks:]
+            if len(blocks) or self._chunk.size >= self._chunk.capacity:
+                self.flush()
 
     def add_metadata(self, name: str, values: Mapping[str, str]):
         """Append a record of names and texts, such as the settings of the run."""
@@ -97,30 +107,31 @@ class BagWriter:
             raise ValueError("a metadata record must not be named 'rosbag2': ros2 bag would "
                              'take it for its own')
         self._check_usable()
-        self._guarded(self._writer.add_metadata, name, dict(values))
+        self._guarded(self._file.add_metadata, name, dict(values))
 
     def add_attachment(self, name: str, data: bytes, media_type: str):
         """Append a whole file, such as the scene, under a name."""
         self._check_usable()
-        self._guarded(self._writer.add_attachment, 0, self._last_stamp, name, media_type, data)
+        self._guarded(self._file.add_attachment, name, data, media_type, self._last_stamp)
 
     def flush(self):
         """End the chunk in progress and hand it to the operating system."""
         self._check_usable()
-        self._guarded(self._writer.flush)
-        self._chunk_bytes = self._chunk_messages = 0
+        if self._chunk.count:
+            self._guarded(self._file.add_chunk, self._chunk)
+            self._chunk.clear()
 
     def close(self):
         """Finish the file with its index and close it; harmless when called again."""
-        if self._output is None:
+        if self._file is None:
             return
         try:
             if not self._failed:
                 self.flush()
-                self._guarded(self._writer.finish)
+                self._guarded(self._file.finish)
         finally:
-            self._output.close()
-            self._output = None
+            self._file.close()
+            self._file = None
 
     def __enter__(self) -> BagWriter:
         """Return the writer."""
@@ -130,18 +141,25 @@ class BagWriter:
         """Close the file."""
         self.close()
 
+    def _advance(self, first_ns, last_ns):
+        """Go on from the last time to another one; raise ValueError for a time before it."""
+        if first_ns < self._last_stamp:
+            raise ValueError(f'{self.path}: a message at {first_ns} ns cannot follow one at '
+                             f'{self._last_stamp} ns: times in a bag never go back')
+        self._last_stamp = last_ns
+
     def _guarded(self, call, *arguments, **named):
-        """Call into the MCAP writer; after a failed write its state is not to be used again."""
+        """Call into the file; after a failed write nothing more is to be added to it."""
         try:
             call(*arguments, **named)
         except OSError:
             self._failed = True
-            self.message_count -= self._chunk_messages
-            self._chunk_messages = 0
+            self.message_count -= self._chunk.count
+            self._chunk.clear()
             raise
 
     def _check_usable(self):
         """Raise ValueError when the file is closed or a write has failed."""
-        if self._output is None or self._failed:
-            reason = 'is closed' if self._output is None else 'could not be written'
+        if self._file is None or self._failed:
+            reason = 'is closed' if self._file is None else 'could not be written'
             raise ValueError(f'{self.path} {reason}: no more can be added to it')

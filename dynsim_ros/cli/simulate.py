@@ -84,7 +84,7 @@ def _simulate(options, signals) -> int:
     channels = scene_channels(simulator.scene, simulator.layout)
     rows = TickRows(channels, simulator.layout)
     signals.hold()
-    bag = RunBag(path, simulator, channels, compression=options.compression, wait=True)
+    bag = RunBag(path, simulator, channels, rows, compression=options.compression, wait=True)
     run = OfflineRun(simulator, commands, _Sink(bag, channels, rows, progress))
     started = time.monotonic()
     try:
@@ -136,11 +136,11 @@ class _Sink:
         """Record what is due at a tick, and show how far the run is."""
         time_ns, tick_ns = simulator.time_ns, simulator.settings.tick_ns
         self._rows.fill(simulator.instant(), time_ns, self._all)
-        messages = {channel.topic: self._rows.message(i)
-                    for i, channel in enumerate(self._rows.channels)}
-        messages |= {channel.topic: channel.encode(simulator.snapshot(), time_ns)
-                     for channel in self._others if channel.is_due(simulator.tick, tick_ns)}
-        self._bag.put(time_ns, messages)
+        self._bag.put_rows(self._rows, time_ns, self._all)
+        messages = {channel.topic: channel.encode(simulator.snapshot(), time_ns)
+                    for channel in self._others if channel.is_due(simulator.tick, tick_ns)}
+        if messages:
+            self._bag.put(time_ns, messages)
         if time.monotonic() >= self._next:
             self._next = time.monotonic() + 0.1
             self._progress.show(time_ns * 1e-9)

@@ -13,6 +13,7 @@ import time
 
 def main(args=None) -> int:
     """Compile; return 0, or 2 with an error on stderr."""
+    from ..bag.pack_rows import prepare_packing
     from ..scene import load_scene
     from ..simulation import Simulator
 
@@ -20,6 +21,7 @@ def main(args=None) -> int:
         started = time.monotonic()
         try:
             Simulator(load_scene(name)).prepare()
+            prepare_packing()
         except ValueError as error:
             print(f'error: {error}', file=sys.stderr)
             return 2

@@ -35,11 +35,11 @@ class TickRows:
     All messages of fixed size of a tick, one behind the other in a block of bytes.
 
     channels: those Channels of a list that have a row, in their order; table: RowTable; size:
-    bytes of a block; block: (size,) uint8, that of the instant filled in last; blocks: (instants,
-    size). Each message is padded to a multiple of four, as DDS does it, and stands behind the head
-    of its record in a bag. To use it: wanted = rows.of(channels), once; at every tick
-    rows.fill(simulator.instant(), stamp_ns, wanted) and, of each row number i in wanted.numbers,
-    publisher.publish(rows.message(i)).
+    bytes of a block; block: (size,) uint8, that of the instant filled in last; view: its memory;
+    blocks: (instants, size). Each message is padded to a multiple of four, as DDS does it, and
+    stands behind the head of its record in a bag. To use it: wanted = rows.of(channels), once; at
+    every tick rows.fill(simulator.instant(), stamp_ns, wanted) and, of each row number i in
+    wanted.numbers, publisher.publish(rows.message(i)).
     """
 
     def __init__(self, channels, layout: Layout):
@@ -105,8 +105,8 @@ class TickRows:
     def _use(self, blocks):
         self.blocks = blocks
         self.block = blocks[-1]
-        view = memoryview(self.block)
-        self._views = [view[start:end] for start, end in self.spans]
+        self.view = memoryview(self.block)
+        self._views = [self.view[start:end] for start, end in self.spans]
 
 
 def _padded(size):

@@ -104,19 +104,22 @@ class Run:
         if self._options['publish_clock']:
             self._clock.publish(self.stamp_ns)
         begin = time.monotonic_ns()
-        messages = self.topics.publish(self.simulator, self.stamp_ns, self.bag is not None)
+        rows, messages = self.topics.publish(self.simulator, self.stamp_ns, self.bag is not None)
         built = time.monotonic_ns()
-        self.record(messages)
+        self.record(messages, rows)
         self.work['publish'] += built - begin
         self.work['record'] += time.monotonic_ns() - built
 
-    def record(self, messages):
-        """Record {topic: CDR bytes} at the present instant, if there is a bag."""
-        if self.bag is not None and messages and not self.waiting:
+    def record(self, messages, rows=None):
+        """Record {topic: CDR bytes}, and rows, at the present instant, if there is a bag."""
+        if self.bag is not None and not self.waiting:
             # A run that is to be faster than time may wait for the disk, another one never.
             factor = self._options['real_time_factor']
             self.bag.recorder.wait = factor == 0.0 or factor > 1.0
-            self.bag.put(self.stamp_ns, messages)
+            if rows is not None and rows.numbers:
+                self.bag.put_rows(self.topics.rows, self.stamp_ns, rows)
+            if messages:
+                self.bag.put(self.stamp_ns, messages)
             self._report_bag_error()
 
     def begin(self, origin_ns):
@@ -186,7 +189,8 @@ class Run:
             path = new_path(directory, self.simulator.scene.name)
             try:
                 return RunBag(
-                    path, self.simulator, [*self.topics.channels, DIAGNOSTICS], node=self._name,
+                    path, self.simulator, [*self.topics.channels, DIAGNOSTICS],
+                    self.topics.rows, node=self._name,
                     resolve=self._resolve, compression=self._options['record.compression'],
                     parameters=self._options)
             except FileExistsError:

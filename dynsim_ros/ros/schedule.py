@@ -3,6 +3,23 @@
 """Which messages are due at which ticks, and which of them somebody wants."""
 
 from collections import Counter
+from typing import NamedTuple
+
+from ..messages.tick_rows import TickRows, Wanted
+
+
+class Due(NamedTuple):
+    """
+    What to build at a tick.
+
+    rows: Wanted; heard: [(row number, publisher)] of those to publish; others: [(channel,
+    publisher)] of what is no row, the publisher None where nobody listens; count: of messages.
+    """
+
+    rows: Wanted
+    heard: list
+    others: list
+    count: int
 
 
 class Schedule:
@@ -11,11 +28,11 @@ class Schedule:
 
     every: after how many ticks each of channels and publishers has a message, 0 for never; heard:
     whether anybody listens; recording: whether all is wanted; made_for: what it was worked out
-    for. wanted: [(channel, publisher, every so many ticks)] of what is built, the publisher None
-    where nobody listens.
+    for; rows: TickRows of the channels. wanted: [(channel, publisher, every so many ticks)] of
+    what is built, the publisher None where nobody listens.
     """
 
-    def __init__(self, channels, publishers, every, heard, recording, made_for):
+    def __init__(self, channels, publishers, every, heard, recording, made_for, rows: TickRows):
         self.made_for = made_for
         self.wanted = [(channel, publisher if listens else None, ticks)
                        for channel, publisher, listens, ticks
@@ -23,6 +40,8 @@ class Schedule:
                        if ticks and (listens or recording)]
         self._intervals = sorted({ticks for _, _, ticks in self.wanted})
         self._due = list(Counter(filter(None, every)).items())
+        self._rows = rows
+        self._built = {}
 
     def ticks_to_wanted(self, tick):
         """Return how many ticks it is to the next one with a wanted message; None: for ever."""
@@ -31,6 +50,24 @@ class Schedule:
         if self._intervals[0] == 1:
             return 1
         return min(ticks - tick % ticks for ticks in self._intervals)
+
+    def due(self, tick):
+        """Return the Due of a tick."""
+        # The same at all ticks at which the same intervals end.
+        ends = tuple(tick % ticks == 0 for ticks in self._intervals)
+        if ends not in self._built:
+            self._built[ends] = self._work_out(tick)
+        return self._built[ends]
+
+    def _work_out(self, tick):
+        due = [(channel, publisher) for channel, publisher, ticks in self.wanted
+               if tick % ticks == 0]
+        rows = self._rows.of([channel for channel, _ in due if channel.row is not None])
+        publishers = [publisher for channel, publisher in due if channel.row is not None]
+        heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
+                 if publisher is not None]
+        others = [(channel, publisher) for channel, publisher in due if channel.row is None]
+        return Due(rows, heard, others, len(due))
 
     def due_between(self, first, last):
         """Return how many messages are due at the ticks first + 1 to last, wanted or not."""

@@ -21,6 +21,7 @@ from .run import Run
 from .services import Services
 from .ticker import Ticker
 from .topics import Topics
+from ..bag.pack_rows import prepare_packing
 from ..messages.epoch import EPOCH
 from ..messages.scene_channels import scene_channels
 from ..messages.tick_rows import TickRows
@@ -51,6 +52,8 @@ class SimNode(Node):
         self.parameters = Parameters(self)
         simulator = Simulator(self.parameters.scene, self.parameters.settings)
         simulator.prepare()
+        # A recording that is asked for later begins at once, too.
+        prepare_packing()
         self.audience = Audience(lambda: self.ticker.mailbox.wake())
         self._clock_publisher = ClockPublisher(self, self.audience)
         self.pacer = Pacer(self.parameters.own['real_time_factor'])

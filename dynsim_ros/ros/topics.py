@@ -50,7 +50,7 @@ class Topics:
             heard = [self._audience.hears(publisher) for publisher in self._publishers]
             every = [every_of(channel, tick_ns, self._options) for channel in self.channels]
             schedule = self._schedule = Schedule(
-                self.channels, self._publishers, every, heard, recording, made_for)
+                self.channels, self._publishers, every, heard, recording, made_for, self.rows)
         return schedule
 
     def rates_changed(self):
@@ -62,20 +62,23 @@ class Topics:
         self.skipped += self.schedule(tick_ns, False).due_between(first, last)
 
     def publish(self, simulator, stamp_ns, recording):
-        """Publish what is due at a tick; return {topic: CDR bytes} of what was built."""
+        """
+        Publish what is due at a tick.
+
+        Returns the Wanted rows, which `rows` holds now, and {topic: CDR bytes} of other messages.
+        """
         tick = simulator.tick
-        schedule, built = self.schedule(simulator.settings.tick_ns, recording), {}
-        due = [(channel, publisher) for channel, publisher, every in schedule.wanted
-               if tick % every == 0]
-        rows = self.rows.of([channel for channel, _ in due if channel.row is not None])
-        self.rows.fill(simulator.instant(), stamp_ns, rows)
-        numbers = iter(rows.numbers)
-        for channel, publisher in due:
-            data = (channel.encode(simulator.snapshot(), stamp_ns) if channel.row is None
-                    else self.rows.message(next(numbers)))
-            built[channel.topic] = data
+        schedule = self.schedule(simulator.settings.tick_ns, recording)
+        due = schedule.due(tick)
+        if due.rows.numbers:
+            self.rows.fill(simulator.instant(), stamp_ns, due.rows)
+        for i, publisher in due.heard:
+            publisher.publish(self.rows.message(i))
+        others = {}
+        for channel, publisher in due.others:
+            others[channel.topic] = data = channel.encode(simulator.snapshot(), stamp_ns)
             if publisher is not None:
                 publisher.publish(data)
-        self.built += len(built)
-        self.skipped += schedule.due_between(tick - 1, tick) - len(built)
-        return built
+        self.built += due.count
+        self.skipped += schedule.due_between(tick - 1, tick) - due.count
+        return due.rows, others
