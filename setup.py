@@ -43,6 +43,7 @@ setup(
     # ROS itself is no requirement: a sourced installation brings it, else the extra 'ros'.
     install_requires=[
         'PyYAML>=5.4,<7',
+        'lz4>=3,<5',
         'mcap>=1.5,<2',
         'numba>=0.59,<1',
         'numpy>=1.23,<3',

@@ -51,9 +51,11 @@ class Signals:
         """Tell whether the program was asked to end."""
         return self.requested
 
-    @staticmethod
-    def ignore():
+    def ignore(self):
         """Let the program end as it is about to, the last act of it."""
+        self._holding = True
+        # Of a signal that comes between its old handler and the new one, Python reports that.
+        sys.unraisablehook = lambda dropped: None
         for number in _ALL:
             signal.signal(number, signal.SIG_IGN)
 

@@ -63,14 +63,31 @@ class Pacer:
         if self.factor == 0.0:
             return wanted, 0
         now = self.now()
-        deadline = min(self.deadline(time_ns + wanted * tick_ns), self._latest)
-        if now < deadline:
-            return 0, deadline - now
-        excess = int((now - deadline - self.longest_lag) * self.factor) // tick_ns
-        if excess > 0:
-            self.missed += excess
-            self._time_start -= excess * tick_ns
+        lag = self._give_up(now, time_ns, tick_ns, wanted)
+        if lag < 0:
+            return 0, -lag
         due = self.ticks_until(now, time_ns, tick_ns)
         if due == 0:
             self.is_up_to_date()
         return due, 0
+
+    def due_before(self, instant, time_ns, tick_ns, wanted):
+        """
+        Return how many ticks are due by an instant, not after now [ns of the clock].
+
+        What is late by now is given up as in `due`, whose arguments the others are.
+        """
+        if self.factor == 0.0:
+            return 0
+        now = self.now()
+        self._give_up(now, time_ns, tick_ns, wanted)
+        return self.ticks_until(min(instant, now), time_ns, tick_ns)
+
+    def _give_up(self, now, time_ns, tick_ns, wanted):
+        """Give up the ticks that are too late; return how late what is wanted was [ns]."""
+        lag = now - min(self.deadline(time_ns + wanted * tick_ns), self._latest)
+        excess = int((lag - self.longest_lag) * self.factor) // tick_ns
+        if excess > 0:
+            self.missed += excess
+            self._time_start -= excess * tick_ns
+        return lag

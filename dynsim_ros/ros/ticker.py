@@ -100,10 +100,10 @@ class Ticker:
             return
         limit = time.monotonic_ns() + LONGEST_LAG
         while arrival is not None:
-            if pacer.factor > 0.0 and self._goes_on():
+            if self._goes_on():
                 simulator = self._run.simulator
-                due = pacer.ticks_until(min(arrival, pacer.now()), simulator.time_ns,
-                                        simulator.settings.tick_ns)
+                due = pacer.due_before(arrival, simulator.time_ns, simulator.settings.tick_ns,
+                                       self._run.ticks_to_wanted())
                 if due > 0:
                     self._advance(due, limit)
             mailbox.next_letter().carry_out()

@@ -11,8 +11,9 @@ import pytest
 from tree import imported_modules, python_files, ROOT
 
 # modules that come with a package of another name in rosdep
-KEYS = {'llvmlite': 'python3-numba', 'mcap': 'mcap-ros2-support', 'numba': 'python3-numba',
-        'numpy': 'python3-numpy', 'yaml': 'python3-yaml', 'zstandard': 'mcap-ros2-support'}
+KEYS = {'llvmlite': 'python3-numba', 'lz4': 'mcap-ros2-support', 'mcap': 'mcap-ros2-support',
+        'numba': 'python3-numba', 'numpy': 'python3-numpy', 'yaml': 'python3-yaml',
+        'zstandard': 'mcap-ros2-support'}
 
 
 @pytest.fixture(scope='module')

@@ -35,7 +35,7 @@ def statistics(node):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal(start, number):
     node = start(*RECORDING, '-p', 'rate:=1000.0')
-    wait_for(lambda: node.bags and node.bags[0].stat().st_size > 50_000)
+    wait_for(lambda: node.bags and node.bags[0].stat().st_size > 250_000)
     output = node.stop(number)
     assert f'{statistics(node).message_count} messages in runs/' in output
     assert statistics(node).message_end_time > 100_000_000
