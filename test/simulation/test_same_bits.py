@@ -36,7 +36,7 @@ def test_compiled_and_as_plain_python(here):
 def test_on_a_processor_that_fuses_nothing(here):
     """Nor has it vectors of four numbers; what is written as fused is so on any."""
     plainest = environment(NUMBA_CPU_NAME='generic', NUMBA_CPU_FEATURES='')
-    found = json.loads(output_of([sys.executable, SCRIPT, 'auto', 'sphere_on_spring'],
+    found = json.loads(output_of([sys.executable, SCRIPT, 'auto', 'particle_on_spring'],
                                  env=plainest))
     assert found.items() <= here.items()
     assert len(found) == 1

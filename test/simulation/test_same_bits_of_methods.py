@@ -11,26 +11,23 @@ from dynsim_ros.simulation import Propagator, Simulator
 import numpy as np
 import pytest
 from references import load
+from simulated import samples
 
 # Extrapolation is compared in test_same_bits.py, a step of dop853 in test_dop853.py.
 COMPILED = [('S3q', 'stiff'), ('S3q', 'radau')]
 METHODS = ('extrapolation', 'dop853', 'stiff', 'radau', 'auto', 'leapfrog')
 
 
-def samples(scene, method):
-    propagator = Propagator(scene, integrator=method, tolerance=1e-6)
-    return propagator.samples(0.2, 100.0), propagator.counts
-
-
 @pytest.mark.parametrize('name, method', COMPILED)
 def test_compiled_again_and_as_plain_python(name, method):
     scene = load(name)[0]
-    compiled, counts = samples(scene, method)
+    settings = {'integrator': method, 'tolerance': 1e-6}
+    compiled, counts = samples(scene, 0.2, 100.0, **settings)
     assert counts['steps'] > 3
-    again, _ = samples(scene, method)
+    again, _ = samples(scene, 0.2, 100.0, **settings)
     np.testing.assert_array_equal(again, compiled)
     with nothing_compiled():
-        plain, plain_counts = samples(scene, method)
+        plain, plain_counts = samples(scene, 0.2, 100.0, **settings)
     np.testing.assert_array_equal(plain, compiled)
     assert plain_counts == counts
 
