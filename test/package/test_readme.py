@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""The tables of README.md against the program."""
+"""The tables of README.md and of the pages in docs/ against the program."""
 
 import ast
 from dataclasses import fields, MISSING
@@ -14,10 +14,11 @@ from dynsim_ros.scene import (Air, Anchor, Box, load_scene, Particle, Rigid, Rig
                               scene_names, Sphere, Spring)
 from dynsim_ros.simulation import Settings, Simulator
 import pytest
-from readme import blocks, column, PROGRAMS, quoted, README, table
+from readme import blocks, column, PAGES, PROGRAMS, quoted, tables
 from tree import output_of, ROOT
 import yaml
 
+NODE, SCENES, INTEGRATORS = 'docs/node.md', 'docs/scenes.md', 'docs/integrators.md'
 OPTIONS_OF_OTHERS = {'--ros-args', '--params-file', '--once', '--from-paths', '--ignore-src'}
 OWNERS = {Scene: '', Air: 'air.', Anchor: '<anchor>.', Particle: '<body>.', Sphere: '<body>.',
           Box: '<body>.', RigidBody: '<body>.', Spring: '<spring>.'}
@@ -30,7 +31,10 @@ def test_parameters_and_their_defaults():
                 **{field.name: field.default for field in fields(Settings)}}
     shown = {name: f'`{str(value).lower() if isinstance(value, bool) else value}`'
              for name, value in defaults.items()}
-    assert column('parameter') == shown
+    (table,) = tables('parameter', NODE)
+    assert column(table) == shown
+    for table in tables('parameter'):
+        assert column(table).items() <= shown.items()
 
 
 def expected_quantities():
@@ -61,18 +65,21 @@ def shown_default(quantity, default):
 
 
 def test_quantities_with_unit_range_and_default():
-    assert {row[0]: row[1:] for row in table('quantity')} == expected_quantities()
+    (table,) = tables('quantity', SCENES)
+    assert {row[0]: row[1:] for row in table} == expected_quantities()
 
 
 def test_scenes_and_what_is_in_them():
-    described = {quoted(row[0])[0]: quoted(row[1]) for row in table('scene')}
+    (table,) = tables('scene', SCENES)
+    described = {quoted(row[0])[0]: quoted(row[1]) for row in table}
     assert sorted(described) == scene_names()
     for name, members in described.items():
         assert set(members) == {member.name for member in load_scene(name).members}, name
 
 
 def test_integrators_with_order():
-    assert column('integrator') == {
+    (table,) = tables('integrator', INTEGRATORS)
+    assert column(table) == {
         name: '–' if method.order is None else str(method.order)
         for name, method in METHODS.items()}
 
@@ -80,21 +87,22 @@ def test_integrators_with_order():
 # The others are for stiff scenes, or to compare with; each would take seconds to compile.
 STATED = [name for name, method in METHODS.items()
           if method.advance is not None or name in ('auto', 'extrapolation')]
+ERRORS = column(tables('integrator', INTEGRATORS)[0], 2)
 
 
 def test_energy_errors_that_are_stated():
-    assert [name for name, error in column('integrator', 2).items() if error != '–'] == STATED
+    assert [name for name, error in ERRORS.items() if error != '–'] == STATED
 
 
 @pytest.mark.parametrize('name', STATED)
 def test_energy_error_of_an_integrator(name):
     run = Simulator(load_scene('sphere_on_spring'), integrator=name).run(10.0)
     error = f'{float(f"{abs(run.imbalance()).max():.0e}"):g} J'
-    assert column('integrator', 2)[name] == error
+    assert ERRORS[name] == error
 
 
 def test_energies_in_order():
-    text = README.split('\n`energy` holds', 1)[1].split('\n###', 1)[0]
+    text = PAGES[NODE].split('\n`energy` holds', 1)[1].split('\n##', 1)[0]
     assert [name for name in quoted(text) if name in ENERGIES] == list(ENERGIES)
 
 
@@ -114,8 +122,8 @@ def described_options():
 
 @pytest.mark.parametrize('program', PROGRAMS)
 def test_options_and_their_defaults(program, described_options):
-    rows = {tuple(quoted(row[0])): row for row in table(f'option of `{program}`')
-            if row[0].startswith('`-')}
+    rows = {tuple(quoted(row[0])): row for table in tables(f'option of `{program}`')
+            for row in table if row[0].startswith('`-')}
     assert set(rows) == set(described_options[program])
     for names, (_, default, _) in rows.items():
         given = re.search(r'default:? (.*)', described_options[program][names])
@@ -128,26 +136,33 @@ def test_options_and_their_defaults(program, described_options):
 def test_no_other_option_is_named(described_options):
     known = OPTIONS_OF_OTHERS.union(*(names for options in described_options.values()
                                       for names in options))
-    assert set(re.findall(r'(?<![\w-])--[a-z][a-z-]*', README)) <= known
+    for page, text in PAGES.items():
+        assert set(re.findall(r'(?<![\w-])--[a-z][a-z-]*', text)) <= known, page
 
 
 def test_launch_arguments():
     tree = ast.parse((ROOT / 'launch' / 'sim.launch.py').read_text(encoding='utf-8'))
     declared = [node.args[0].value for node in ast.walk(tree) if isinstance(node, ast.Call)
                 and getattr(node.func, 'id', None) == 'DeclareLaunchArgument']
-    assert list(column('launch argument')) == declared
+    (table,) = tables('launch argument', NODE)
+    assert list(column(table)) == declared
 
 
-def test_links_and_make_targets_exist():
-    for link in re.findall(r'\]\(([^)#]+)\)', README):
-        assert (ROOT / link).exists(), link
-    makefile = (ROOT / 'Makefile').read_text(encoding='utf-8')
-    for target in re.findall(r'(?:`|^)make (?:[A-Z]+=\S+ )?([a-z]+)', README, re.MULTILINE):
-        assert re.search(f'^{target}:', makefile, re.MULTILINE), target
+def test_what_the_front_page_sums_up():
+    names = {}
+    for kind, heading in (('topic', 'topic'), ('service', 'service')):
+        for table in tables(heading, NODE):
+            names.update({f'{kind} `{name}`': type_name
+                          for name, type_name in column(table).items()})
+    (table,) = tables('to', 'README.md')
+    for _, name, type_name in table:
+        assert names[name.partition(',')[0]] == type_name
+    ratios, (every,) = tables('scene', 'README.md')[0], tables('scene', 'docs/performance.md')
+    assert ratios and all(row in every for row in ratios)
 
 
 def test_example_scene_has_every_field():
-    text = next(text for _, name, text in blocks() if name == 'my_scene.yaml')
+    text = next(text for _, name, text in blocks(SCENES) if name == 'my_scene.yaml')
     example = yaml.safe_load(text)
     members = {section: set().union(*example[section].values())
                for section in ('bodies', 'anchors', 'springs')}

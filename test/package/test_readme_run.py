@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""README.md: what it says to run, by running it; what it says of the node, by asking the node."""
+"""The pages: what they say to run, by running it; what they say of the node, by asking it."""
 
 import os
 import re
@@ -10,36 +10,27 @@ import sys
 
 from live_node import LiveNode
 import pytest
-from readme import blocks, column, PROGRAMS, quoted, README, table
+from readme import blocks, column, PAGES, PROGRAMS, quoted, tables
 from ros_client import Client
 from tree import ROOT
 
+NODE = 'docs/node.md'
 DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
 
 
-@pytest.fixture(scope='module')
-def desk(tmp_path_factory):
-    """Give a function that starts a shell command in a folder with the files of README.md."""
-    folder = tmp_path_factory.mktemp('desk')
-    for _, name, text in blocks():
-        if '.' in name:
-            (folder / name).write_text(text, encoding='utf-8')
-    programs = {'python': '', **{name: f'-m dynsim_ros.cli.{name}' for name in PROGRAMS}}
-    for name in ('tools', 'bin'):
-        (folder / name).mkdir()
-    scripts = {folder / 'bin' / name: f'exec "{sys.executable}" {module} "$@"'
-               for name, module in programs.items()}
-    for path, script in {**scripts, folder / 'tools' / 'in_venv': 'exec "$@"'}.items():
-        path.write_text(f'#!/bin/sh\n{script}\n')
-        path.chmod(0o755)
-    variables = dict(os.environ, PATH=f'{folder / "bin"}{os.pathsep}{os.environ["PATH"]}')
-
+@pytest.fixture
+def desk(tmp_path):
+    """Give a function that starts a shell command in a folder with the files that a page shows."""
     started = []
 
-    def start(command, **options):
+    def start(page, command, **options):
+        if not (tmp_path / 'tools').exists():
+            lay_out(tmp_path, page)
+        path = f'{tmp_path / "bin"}{os.pathsep}{os.environ["PATH"]}'
         started.append(subprocess.Popen(
-            ['sh', '-ec', command], cwd=folder, env=variables, text=True, start_new_session=True,
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options))
+            ['sh', '-ec', command], cwd=tmp_path, env=dict(os.environ, PATH=path), text=True,
+            start_new_session=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, **options))
         return started[-1]
 
     yield start
@@ -49,23 +40,41 @@ def desk(tmp_path_factory):
             process.wait()
 
 
+def lay_out(folder, page):
+    """Put into a folder what a reader of a page has: the files of all pages, above all its own."""
+    for other in sorted(PAGES, key=lambda other: other == page):
+        for _, name, text in blocks(other):
+            if '.' in name:
+                (folder / name).write_text(text, encoding='utf-8')
+    for name in ('config', 'examples', 'scenes'):
+        (folder / name).symlink_to(ROOT / name)
+    programs = {'python': '', **{name: f'-m dynsim_ros.cli.{name}' for name in PROGRAMS}}
+    for name in ('tools', 'bin'):
+        (folder / name).mkdir()
+    scripts = {folder / 'bin' / name: f'exec "{sys.executable}" {module} "$@"'
+               for name, module in programs.items()}
+    for path, script in {**scripts, folder / 'tools' / 'in_venv': 'exec "$@"'}.items():
+        path.write_text(f'#!/bin/sh\n{script}\n')
+        path.chmod(0o755)
+
+
 @pytest.mark.timeout(300)
-def test_what_it_says_to_run_runs(desk):
-    """Its largest scene takes long to compile on a busy machine."""
-    runnable = [(language, text) for language, name, text in blocks() if name == 'run']
-    assert [language for language, _ in runnable] == [
-        'sh', 'sh', 'python', 'python', 'python', 'sh']
-    for language, text in runnable:
-        script = text if language == 'sh' else f"python - <<'END'\n{text}END"
-        process = desk(script)
+@pytest.mark.parametrize('page', PAGES)
+def test_what_a_page_says_to_run_runs(desk, page):
+    """From the top of a page down; the largest scene takes long to compile on a busy machine."""
+    for language, about, text in blocks(page):
+        if about != 'run':
+            continue
+        script = {'sh': text, 'python': f"python - <<'END'\n{text}END"}[language]
+        process = desk(page, script)
         output, _ = process.communicate(timeout=200)
         assert process.returncode == 0, f'{text}\n{output}'
         assert 'error' not in output and 'warning' not in output, output
 
 
 def test_error_that_it_shows(desk):
-    shown = re.search('`(error: [^`]+)`', README).group(1)
-    process = desk('tools/in_venv simulate sphere_on_spring --set sphere.mass=-2')
+    shown = re.search('`(error: [^`]+)`', PAGES[NODE]).group(1)
+    process = desk(NODE, 'tools/in_venv simulate sphere_on_spring --set sphere.mass=-2')
     assert process.communicate(timeout=60)[0] == f'{shown}\n'
     assert process.returncode == 2
 
@@ -86,7 +95,7 @@ def client(tmp_path_factory):
 
 
 def generic(names_and_types):
-    """Return a dict from names as in the README to types, of topics or services."""
+    """Return a dict from names as in the page to types, of topics or services."""
     pairs = [('/dynsim/sphere/', '~/<body>/'), ('/dynsim/hand/', '~/<anchor>/'),
              ('/dynsim/', '~/')]
     found = {}
@@ -106,28 +115,31 @@ def test_topics_commands_and_services(client):
     offered = generic(node.get_service_names_and_types_by_node('dynsim', '/'))
     for of_every_node in ('/rosout', '/parameter_events'):
         published.pop(of_every_node, None)
-    assert column('topic') == published
-    assert column('topic', which=1) == taken
+    topics, commands = tables('topic', NODE)
+    (services,) = tables('service', NODE)
+    assert column(topics) == published
+    assert column(commands) == taken
     # the parameter services are mentioned, not listed
-    assert column('service') == {
+    assert column(services) == {
         name: kind for name, kind in offered.items() if 'std_srvs' in kind}
 
 
 def test_diagnostics(client):
     status = client.more('/diagnostics')[-1].status
+    (table,) = tables('status in `/diagnostics`', NODE)
     assert {part.name: [value.key for value in part.values] for part in status} == {
-        quoted(row[0])[0]: quoted(row[1]) for row in table('status in `/diagnostics`')}
+        quoted(row[0])[0]: quoted(row[1]) for row in table}
 
 
 def test_listening_and_steering(client, desk):
-    listener = desk('exec tools/in_venv python -u listen.py', bufsize=1)
+    listener = desk('README.md', 'exec tools/in_venv python -u listen.py', bufsize=1)
     for _ in range(3):
         assert re.fullmatch(r'\d+\.\d\d s: [+-]\d\.\d{3} [+-]\d\.\d{3} [+-]\d\.\d{3} m\n',
                             listener.stdout.readline())
     listener.send_signal(signal.SIGINT)
     output, _ = listener.communicate(timeout=30)
     assert (listener.returncode, 'Traceback' in output) == (0, False), output
-    steering = desk('tools/in_venv python steer.py')
+    steering = desk('README.md', 'tools/in_venv python steer.py')
     output, _ = steering.communicate(timeout=30)
     assert steering.returncode == 0, output
     assert 'successful=True' in output and 'paused at tick' in output
