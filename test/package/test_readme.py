@@ -77,6 +77,14 @@ def test_scenes_and_what_is_in_them():
         assert set(members) == {member.name for member in load_scene(name).members}, name
 
 
+def test_every_scene_has_its_picture():
+    shown = re.findall(r'\(docs/gallery/(\w+)\.png\)', PAGES['README.md'])
+    assert sorted(shown) == scene_names()
+    headings = [name for row in PAGES['README.md'].splitlines() if row.startswith('| `')
+                for name in quoted(row) if name in scene_names()]
+    assert headings == shown
+
+
 def test_integrators_with_order():
     (table,) = tables('integrator', INTEGRATORS)
     assert column(table) == {
