@@ -11,7 +11,7 @@ import sys
 
 from .progress import Progress
 from .ros_arguments import split
-from .signals import Interrupted, Signals
+from .signals import Signals
 
 _DESCRIPTION = """\
 Publish the messages of a bag on the topics they were recorded from, with the recorded timing.
@@ -33,10 +33,7 @@ def main(args: Sequence[str] | None = None) -> int:
     """Replay a bag; return 0, also when stopped by a signal, or 2 with an error on stderr."""
     signals = Signals()
     try:
-        own, ros_args = split(sys.argv[1:] if args is None else args)
-        return _replay(_parser().parse_args(own), ros_args, signals)
-    except Interrupted:
-        return 0
+        return signals.run(lambda: _replay(sys.argv[1:] if args is None else args, signals))
     except ImportError as error:
         print(f'error: {error}: install or source ROS 2 Jazzy', file=sys.stderr)
     except ValueError as error:
@@ -47,8 +44,10 @@ def main(args: Sequence[str] | None = None) -> int:
     return 2
 
 
-def _replay(options: argparse.Namespace, ros_args: Sequence[str], signals: Signals) -> int:
+def _replay(args: Sequence[str], signals: Signals) -> int:
     """Open the bag, start the node and play."""
+    own, ros_args = split(args)
+    options = _parser().parse_args(own)
     # Imported here so that --help needs no ROS.
     from ..bag.reader import open_bag
     from ..ros.replayer import Replayer, ReplayOptions

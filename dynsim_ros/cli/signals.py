@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import signal
 import sys
 
@@ -40,6 +41,19 @@ class Signals:
             # A program started with nohup or in the background is not to be ended by these.
             if signal.getsignal(number) != signal.SIG_IGN or number == signal.SIGTERM:
                 signal.signal(number, self._handle)
+
+    def run(self, program: Callable[[], int], stopped: int = 0) -> int:
+        """Run a program and return its exit status, or `stopped` if it was ended at its start."""
+        try:
+            return program()
+        except Interrupted:
+            return stopped
+        except Exception:
+            # What a module or a compiler written in C makes of an Interrupted: an ImportError,
+            # a RuntimeError.
+            if self.requested and not self._holding:
+                return stopped
+            raise
 
     def hold(self):
         """Let a signal be noted, from here on; raise Interrupted if one was dropped before."""

@@ -11,7 +11,7 @@ import os
 import sys
 
 from .ros_arguments import split
-from .signals import Interrupted, Signals
+from .signals import Signals
 from .status_line import StatusLine
 
 _DESCRIPTION = """\
@@ -43,15 +43,7 @@ def main(args=None) -> int:
     # Other threads give the interpreter back sooner, so that ticks are less late.
     sys.setswitchinterval(0.0005)
     try:
-        own, ros_args = split(sys.argv[1:] if args is None else args)
-        return _simulate(_parser(own).parse_args(own), ros_args, signals)
-    except Interrupted:
-        return 0
-    except RuntimeError:
-        # What becomes of an Interrupted that a callback from C, as a compiler has them, dropped.
-        if not signals.requested:
-            raise
-        return 0
+        return signals.run(lambda: _simulate(sys.argv[1:] if args is None else args, signals))
     except ImportError as error:
         print(f'error: {error}: install or source ROS 2 Jazzy', file=sys.stderr)
     except ValueError as error:
@@ -62,7 +54,9 @@ def main(args=None) -> int:
     return 2
 
 
-def _simulate(options, ros_args, signals) -> int:
+def _simulate(args, signals) -> int:
+    own, ros_args = split(args)
+    options = _parser(own).parse_args(own)
     # Imported here so that --help needs no ROS.
     from ..ros.context import ros_context, spinning
     from ..ros.sim_node import SimNode

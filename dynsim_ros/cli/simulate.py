@@ -9,7 +9,7 @@ import sys
 import time
 
 from .progress import Progress
-from .signals import Interrupted, Signals
+from .signals import Signals
 
 _DESCRIPTION = """\
 Simulate a scene into a bag, without any ROS process and as fast as the machine can.
@@ -44,27 +44,21 @@ def main(args=None) -> int:
     """
     signals = Signals()
     try:
-        own = sys.argv[1:] if args is None else args
-        return _simulate(_parser(own).parse_args(own), signals)
+        return signals.run(
+            lambda: _simulate(sys.argv[1:] if args is None else args, signals), stopped=130)
     except (ValueError, ImportError) as error:
         print(f'error: {error}', file=sys.stderr)
     except OSError as error:
         print(f'error: {error.filename or "the bag"}: {error.strerror}; choose another --output',
               file=sys.stderr)
-    except Interrupted:
-        return 130
-    except RuntimeError:
-        # What becomes of an Interrupted that a callback from C, as a compiler has them, dropped.
-        if not signals.requested:
-            raise
-        return 130
     finally:
         if args is None:
             signals.ignore()
     return 2
 
 
-def _simulate(options, signals) -> int:
+def _simulate(args, signals) -> int:
+    options = _parser(args).parse_args(args)
     # Imported here so that --help is quick.
     from ..bag.run_bag import new_path, RunBag
     from ..messages.scene_channels import scene_channels
