@@ -57,6 +57,8 @@ def _replay(args: Sequence[str], signals: Signals) -> int:
         known_problem = bag.problem
         if known_problem:
             _warn(known_problem)
+        # What follows starts a thread, which nothing may interrupt.
+        signals.hold()
         with serving('dynsim_replay', ros_args) as node:
             player = Replayer(node, bag, ReplayOptions(
                 rate=options.rate, loop=options.loop, start_offset=options.start_offset,
@@ -73,7 +75,6 @@ def _replay(args: Sequence[str], signals: Signals) -> int:
 
 def _play(player, bag, quiet: bool, signals: Signals):
     """Play, showing how far it is, until the end or a signal."""
-    signals.hold()
     progress = Progress(player.duration, quiet=quiet)
     progress.say(f'{bag.path}: {len(player.topics)} topics, playing {player.duration:.3f} s'
                  + (', paused: call the service ~/resume to start' if player.paused else ''))

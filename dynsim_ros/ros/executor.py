@@ -7,6 +7,7 @@ EventsExecutor answers in half the time that SingleThreadedExecutor takes, but i
 spin() was seen to run at full load and fire no timer. It is used after it has been tried.
 """
 
+from functools import partial
 import time
 
 from rclpy.clock import Clock
@@ -44,7 +45,8 @@ def new_executor(node: Node, fast=EventsExecutor) -> Executor:
 def _problem(executor: Executor, node: Node) -> str | None:
     """Return what is wrong with an executor, in words; None if it fires timers and can wait."""
     fired = []
-    timer = node.create_timer(_PERIOD, lambda: fired.append(True),
+    # Not a function in Python: a signal would raise its exception there, which rclpy reports.
+    timer = node.create_timer(_PERIOD, partial(fired.append, True),
                               clock=Clock(clock_type=ClockType.STEADY_TIME))
     begin, used = time.monotonic(), time.thread_time()
     try:
