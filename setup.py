@@ -30,6 +30,7 @@ setup(
     maintainer_email='dynsim_ros@users.noreply.github.com',
     license='Apache-2.0',
     packages=find_packages(exclude=['test', 'test.*']),
+    package_data={NAME: ['messages/shipped/share/*/msg/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),

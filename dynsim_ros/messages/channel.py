@@ -11,6 +11,8 @@ from .qos import Qos, STATE
 from .row import Row
 
 WORLD = 'world'
+# How often what is only to be looked at has to come.
+FOR_VIEWERS_NS = 40_000_000
 _SECOND = 1_000_000_000
 
 
@@ -19,7 +21,7 @@ class Channel:
     """
     A topic that is published from the state of a run.
 
-    topic: relative to the node, such as 'sphere/pose'; type_name: of its messages;
+    topic: relative to the node, such as 'sphere/pose', or a full name; type_name: of its messages;
     encode(snapshot, stamp_ns): returns one message as CDR bytes, None where there is a row: Row,
     how a kernel fills it in; interval_ns: the time that passes at least between two messages
     [ns], 0 for every tick.

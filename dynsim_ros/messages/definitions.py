@@ -1,6 +1,10 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Definitions of ROS messages, found in the share folders of the ROS on this machine."""
+"""
+Definitions of ROS messages, found in the share folders of the ROS on this machine.
+
+Those that bags hold but ROS on PyPI lacks are shipped with this package.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +22,7 @@ from rosidl_adapter import parser
 
 _TYPE_NAME = re.compile(r'([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9]*)')
 _SEPARATOR = '=' * 80
+_SHIPPED = Path(__file__).parent / 'shipped'
 
 
 class MessageDefinitionError(ValueError):
@@ -67,8 +72,9 @@ def definition(type_name: str) -> MessageDefinition:
     """
     Return the definition of a type such as 'geometry_msgs/msg/PoseStamped'.
 
-    Looks in every prefix of AMENT_PREFIX_PATH, in sys.prefix, and above the message's Python
-    package. Raises MessageDefinitionError, in one line, for a type that is not there.
+    Looks in every prefix of AMENT_PREFIX_PATH, in sys.prefix, above the message's Python
+    package, and among those shipped. Raises MessageDefinitionError, in one line, for a type that
+    is not there.
     """
     path = _msg_file(type_name)
     text, fields = _read(type_name, path)
@@ -106,7 +112,7 @@ def _prefixes(package: str) -> list[Path]:
     for folder in (spec.submodule_search_locations or ()) if spec else ():
         prefixes += [parent for parent in Path(folder).parents
                      if (parent / 'share' / package).is_dir()]
-    return list(dict.fromkeys(prefixes))
+    return list(dict.fromkeys([*prefixes, _SHIPPED]))
 
 
 @cache

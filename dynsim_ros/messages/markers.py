@@ -7,13 +7,12 @@ from __future__ import annotations
 import numpy as np
 
 from .cdr import Template
-from .channel import Channel, stamp, WORLD
+from .channel import Channel, FOR_VIEWERS_NS, stamp, WORLD
 from ..physics.rotation import rotate
 from ..scene import Box, Rigid, Sphere
 from ..scene.orientation import to_ros
 
 MARKERS = 'visualization_msgs/msg/MarkerArray'
-_INTERVAL_NS = 40_000_000
 # visualization_msgs/Marker: kinds of marker.
 _CUBE, _SPHERE, _LINE_STRIP, _LINE_LIST = 1, 2, 4, 5
 _BODY, _ANCHOR, _SPRING = (0.25, 0.5, 0.9, 0.8), (0.9, 0.3, 0.2, 1.0), (0.6, 0.6, 0.6, 1.0)
@@ -57,7 +56,7 @@ def marker_channel(scene):
             markers = _Markers(snapshot.scene)
         return markers.encode(snapshot, stamp_ns)
 
-    return Channel('markers', MARKERS, encode_markers, interval_ns=_INTERVAL_NS)
+    return Channel('markers', MARKERS, encode_markers, interval_ns=FOR_VIEWERS_NS)
 
 
 def _scale(scene):

@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""The topics of a scene: poses, twists, wrenches, energy, markers. Only those that it has."""
+"""The topics of a scene: poses, twists, wrenches, energy, frames, markers. What it has."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from .channel import Channel, WORLD
 from .markers import marker_channel
 from .row import Row
 from .template import Template
+from .transforms import transform_channel
 from ..scene import Rigid
 from ..scene.orientation import to_ros
 from ..simulation.rows.tick_numbers import ENERGIES, Numbers
@@ -23,14 +24,14 @@ _ZERO = {'x': 0.0, 'y': 0.0, 'z': 0.0}
 _UNTURNED = {'pose': {'orientation': {**_ZERO, 'w': 1.0}}}
 
 
-def scene_channels(scene, layout):
-    """Return the Channels of a scene; layout: Layout of its arrays."""
+def scene_channels(scene, layout, node='/dynsim'):
+    """Return the Channels of a scene; layout: Layout of its arrays; node: its full name."""
     channels, numbers = [], Numbers(layout)
     for body in scene.bodies:
         channels += [_pose(body, numbers), _twist(body, numbers)]
         channels += [_wrench(kind, body, numbers) for kind in wrench_kinds(scene, body)]
     channels += [_anchor_pose(anchor, numbers) for anchor in scene.anchors]
-    return [*channels, _energy(numbers), marker_channel(scene)]
+    return [*channels, _energy(numbers), transform_channel(scene, node), marker_channel(scene)]
 
 
 def wrench_kinds(scene, body):

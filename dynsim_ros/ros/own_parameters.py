@@ -33,6 +33,7 @@ OWN = {
                  Quantity('Hz', 'publish rate', minimum=0.0, maximum=1e4))
        for name, what in PUBLISH_RATES.items()},
     'publish_wrenches': Own(True, 'publish and record the wrenches'),
+    'publish_tf': Own(True, 'publish and record the frames of bodies and anchors on /tf'),
     'real_time.spin': Own(0.0, 'how long before each deadline to wait busily [s]',
                           Quantity('s', 'busy wait', minimum=0.0, maximum=0.01), read_only=True),
     'real_time.priority': Own(0.0, 'priority of the ticking thread in SCHED_FIFO, 0 = none',

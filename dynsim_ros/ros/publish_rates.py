@@ -5,11 +5,13 @@
 import math
 
 from ..messages.scene_channels import WRENCH
+from ..messages.transforms import TRANSFORMS
 from ..scene import SceneError
 
 # {parameter: what it is about}
 PUBLISH_RATES = {'publish_rate.state': 'poses and twists', 'publish_rate.wrench': 'wrenches',
                  'publish_rate.energy': 'energies'}
+_SWITCHES = {WRENCH: 'publish_wrenches', TRANSFORMS: 'publish_tf'}
 # Of the rate, for divisors that are no short decimal numbers, such as 333.333.
 _TOLERANCE = 1e-5
 
@@ -24,9 +26,10 @@ def every_of(channel, tick_ns, values):
     """
     Return how many ticks of a length [ns] it is from one message to the next, 0 for no message.
 
-    values: {parameter: value} of PUBLISH_RATES, and publish_wrenches.
+    values: {parameter: value} of PUBLISH_RATES, and of those that switch a type of message off.
     """
-    if channel.type_name == WRENCH and not values['publish_wrenches']:
+    switch = _SWITCHES.get(channel.type_name)
+    if switch is not None and not values[switch]:
         return 0
     name = _group(channel)
     if name is None or values[name] == 0.0:

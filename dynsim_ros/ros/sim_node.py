@@ -83,7 +83,8 @@ class SimNode(Node):
 
     def _tie(self, simulator):
         """Make what publishes the run, what it ticks in and what commands it."""
-        channels = scene_channels(simulator.scene, simulator.layout)
+        channels = scene_channels(simulator.scene, simulator.layout,
+                                  self.get_fully_qualified_name())
         topics = Topics(self, channels, TickRows(channels, simulator.layout), self.audience,
                         self.parameters.own)
         self.run = Run(simulator, topics, self._clock_publisher, self.parameters.own, self)

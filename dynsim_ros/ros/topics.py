@@ -5,18 +5,19 @@
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from .audience import Audience
-from .message_types import message_class
+from .message_types import has_message_class, message_class
 from .publish_rates import every_of
 from .qos import profile
 from .schedule import Schedule
 from ..messages.tick_rows import TickRows
+from ..messages.transforms import TRANSFORMS
 
 
 class Topics:
     """
     Publishes the messages of a list of Channels, as the bytes that are also recorded.
 
-    Topics are relative to the node (~/). rows: TickRows of the channels; audience: Audience of
+    Topics are relative to the node (~/) or full names. rows: TickRows of the channels; audience: Audience of
     these and other publishers; options: dict of the node's own parameters, always up to date.
     skipped: messages that were due but not built; built: those that were.
     """
@@ -34,11 +35,14 @@ class Topics:
 
     def resolve(self, topic):
         """Return the full name that a topic has here, remapped if it is."""
-        return self._node.resolve_topic_name(topic if topic[0] == '/' else f'~/{topic}')
+        return self._node.resolve_topic_name(_below_node(topic))
 
     def _publisher(self, channel):
+        if channel.type_name == TRANSFORMS and not has_message_class(TRANSFORMS):
+            # ROS on PyPI has no tf; bags have it all the same.
+            return None
         return self._audience.of(lambda events: self._node.create_publisher(
-            message_class(channel.type_name), f'~/{channel.topic}', profile(channel.qos),
+            message_class(channel.type_name), _below_node(channel.topic), profile(channel.qos),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=events))
 
@@ -47,7 +51,8 @@ class Topics:
         made_for = self._audience.version, self._rates_version, tick_ns, recording
         schedule = self._schedule
         if schedule is None or schedule.made_for != made_for:
-            heard = [self._audience.hears(publisher) for publisher in self._publishers]
+            heard = [publisher is not None and self._audience.hears(publisher)
+                     for publisher in self._publishers]
             every = [every_of(channel, tick_ns, self._options) for channel in self.channels]
             schedule = self._schedule = Schedule(
                 self.channels, self._publishers, every, heard, recording, made_for, self.rows)
@@ -82,3 +87,7 @@ class Topics:
         self.built += due.count
         self.skipped += schedule.due_between(tick - 1, tick) - due.count
         return due.rows, others
+
+
+def _below_node(topic):
+    return topic if topic[0] == '/' else f'~/{topic}'

@@ -14,7 +14,8 @@ TYPES = (
     'geometry_msgs/msg/PoseStamped', 'geometry_msgs/msg/TwistStamped',
     'geometry_msgs/msg/WrenchStamped', 'rcl_interfaces/msg/Parameter', 'rosgraph_msgs/msg/Clock',
     'sensor_msgs/msg/PointCloud2', 'std_msgs/msg/Empty', 'std_msgs/msg/Float64MultiArray',
-    'std_msgs/msg/Header', 'std_msgs/msg/UInt64', 'visualization_msgs/msg/MarkerArray')
+    'std_msgs/msg/Header', 'std_msgs/msg/UInt64', 'tf2_msgs/msg/TFMessage',
+    'visualization_msgs/msg/MarkerArray')
 
 
 @pytest.fixture

@@ -62,3 +62,9 @@ def test_tests_are_not_installed(prefix):
     tops = {path.parent.name for path in prefix.rglob('__init__.py')}
     assert 'dynsim_ros' in tops
     assert not {'test', 'package'} & tops
+
+
+def test_definitions_that_ros_on_pypi_lacks_are_installed(environment):
+    ask = ('from dynsim_ros.messages.definitions import definition; '
+           'print(definition("tf2_msgs/msg/TFMessage").type_hash)')
+    assert output_of([sys.executable, '-c', ask], cwd='/', env=environment).startswith('RIHS01_')
