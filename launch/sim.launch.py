@@ -69,7 +69,9 @@ def switches(**values):
 
 def rviz(namespace, clock):
     """Return RViz; its topics, absolute in the file, are moved into the namespace."""
-    topics = ('dynsim/markers', 'dynsim/sphere/pose', 'dynsim/hand/command')
+    topics = ('dynsim/markers', 'dynsim/sphere/pose', 'dynsim/sphere/twist',
+              'dynsim/sphere/wrench/net', 'dynsim/hand/command', 'dynsim/handles/update',
+              'dynsim/handles/feedback', 'dynsim/handles/get_interactive_markers')
     return Node(
         package='rviz2', executable='rviz2', name='rviz2', namespace=namespace,
         arguments=['-d', str(SHARE / 'config' / 'sim.rviz')],

@@ -29,7 +29,7 @@ class _Markers:
 
     def __init__(self, scene):
         self.scene = scene
-        scale = _scale(scene)
+        scale = drawing_scale(scene)
         parts = [part for i, body in enumerate(scene.bodies) for part in _body(body, i, scale)]
         parts += [_anchor(i, scale) for i in range(len(scene.anchors))]
         parts += [_spring(scene, spring, i, scale) for i, spring in enumerate(scene.springs)]
@@ -59,7 +59,7 @@ def marker_channel(scene):
     return Channel('markers', MARKERS, encode_markers, interval_ns=FOR_VIEWERS_NS)
 
 
-def _scale(scene):
+def drawing_scale(scene):
     """Return a length to draw by what has no size of its own [m]."""
     sizes = [min(_size(body, 0.1)) for body in scene.bodies if isinstance(body, (Sphere, Box))]
     lengths = [0.2 * spring.natural_length for spring in scene.springs if spring.natural_length]

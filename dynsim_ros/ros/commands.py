@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Commands by topic: anchors, pushes, single parameters."""
+"""Commands by topic: anchors, pushes, single parameters; and anchors that are dragged."""
 
 from geometry_msgs.msg import PointStamped, WrenchStamped
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -35,28 +35,34 @@ class Commands:
         scene = run.simulator.scene
         for anchor in scene.anchors:
             self._subscribe(PointStamped, anchor_topic(anchor.name),
-                            lambda message, name=anchor.name: self._move(name, message))
+                            lambda message, name=anchor.name: self._move(name, message.header,
+                                                                         message.point))
         for body in scene.bodies:
             self._subscribe(WrenchStamped, push_topic(body.name),
                             lambda message, name=body.name: self._push(name, message))
         self._subscribe(ParameterMessage, PARAMETER_TOPIC, self._set)
 
-    def _subscribe(self, message_type, topic, callback):
-        def guarded(message):
-            try:
-                callback(message)
-            except SceneError as error:
-                self._run.refused += 1
-                self._node.get_logger().warning(f'~/{topic} refused: {error}',
-                                                throttle_duration_sec=_THROTTLE)
+    def drag(self, topic, anchor, header, point):
+        """Move an anchor to where it was dragged to, as told on some topic."""
+        self._guarded(topic, lambda: self._move(anchor, header, point))
 
+    def _subscribe(self, message_type, topic, callback):
         self._node.create_subscription(
-            message_type, f'~/{topic}', guarded, profile(COMMAND),
+            message_type, f'~/{topic}',
+            lambda message: self._guarded(topic, lambda: callback(message)), profile(COMMAND),
             qos_overriding_options=QoSOverridingOptions.with_default_policies())
 
-    def _move(self, anchor, message):
-        _check_frame(message.header)
-        self._tell(MoveAnchor(anchor, _numbers(message.point)))
+    def _guarded(self, topic, action):
+        try:
+            action()
+        except SceneError as error:
+            self._run.refused += 1
+            self._node.get_logger().warning(f'~/{topic} refused: {error}',
+                                            throttle_duration_sec=_THROTTLE)
+
+    def _move(self, anchor, header, point):
+        _check_frame(header)
+        self._tell(MoveAnchor(anchor, _numbers(point)))
 
     def _push(self, body, message):
         _check_frame(message.header)

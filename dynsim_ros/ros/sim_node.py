@@ -13,6 +13,7 @@ from .compiling import Compiling
 from .context import one_line
 from .diagnostics import Diagnostics
 from .followed_clock import FollowedClock
+from .handles import handles_for
 from .message_types import message_class
 from .pacing import Pacer
 from .parameters import Parameters, refused
@@ -92,6 +93,7 @@ class SimNode(Node):
                              lambda: self._followed is None or self._followed.is_good(),
                              self.parameters.own, lambda line: self.get_logger().warning(line))
         self.commands = Commands(self, self.run, self.ticker.mailbox)
+        self.handles = handles_for(self, simulator.scene, self.commands.drag)
 
     def begin(self):
         """
@@ -118,6 +120,8 @@ class SimNode(Node):
         self.run.finish_bags()
         for timer in self._own_timers:
             timer.cancel()
+        if self.handles is not None:
+            self.handles.end()
         return self.compiling.give_up()
 
     def set_parameters_atomically(self, parameter_list):
@@ -215,4 +219,6 @@ class SimNode(Node):
     def _every_second(self):
         self.audience.look()
         self.ticker.mailbox.ask(self.diagnostics.publish)
+        if self.handles is not None:
+            self.handles.follow(self.ticker.mailbox.ask(self.run.simulator.snapshot))
         self.compiling.prepare_ahead(self._copy)

@@ -17,9 +17,9 @@ class Topics:
     """
     Publishes the messages of a list of Channels, as the bytes that are also recorded.
 
-    Topics are relative to the node (~/) or full names. rows: TickRows of the channels; audience: Audience of
-    these and other publishers; options: dict of the node's own parameters, always up to date.
-    skipped: messages that were due but not built; built: those that were.
+    Topics are relative to the node (~/) or full names. rows: TickRows of the channels; audience:
+    Audience of these and other publishers; options: dict of the node's own parameters, always up
+    to date. skipped: messages that were due but not built; built: those that were.
     """
 
     def __init__(self, node, channels, rows: TickRows, audience: Audience, options):
