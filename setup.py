@@ -73,6 +73,7 @@ setup(
             'flake8-docstrings>=1.6,<2',
             'flake8-import-order>=0.18,<1',
             'flake8-quotes>=3.3,<4',
+            'matplotlib>=3.6,<4',
             'mcap-ros2-support>=0.5,<1',
             'mpmath>=1.2,<2',
             'pytest>=7.4,<9',
