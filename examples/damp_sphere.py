@@ -88,7 +88,8 @@ def swing(node, damper, is_on, duration):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
-    parser.add_argument('--duration', type=float, default=5.0, help='simulated seconds (default 5)')
+    parser.add_argument('--duration', type=float, default=5.0,
+                        help='simulated seconds of each run (default 5)')
     duration = parser.parse_args().duration
     rclpy.init()
     node = rclpy.create_node('damp_sphere')
