@@ -83,7 +83,10 @@ def _play(player, bag, quiet: bool, signals: Signals):
         state = ', paused' if player.paused else ''
         progress.show(seconds, f'{player.published} messages{state}')
 
-    finished = player.run(signals.is_requested, report)
+    try:
+        finished = player.run(signals.is_requested, report)
+    finally:
+        progress.clear()
     progress.say(('replayed' if finished else 'stopped after') + f' {player.published} messages')
 
 

@@ -65,10 +65,12 @@ def _simulate(args, signals) -> int:
     line = StatusLine(not options.quiet and (options.status or sys.stdout.isatty()))
     with ros_context('sim_node', ros_args):
         line.show('starting: loading the kernels (compiling them takes a while the first time)')
-        node = SimNode(is_ending=signals.is_requested)
-        _settle()
-        signals.hold()
-        line.end()
+        try:
+            node = SimNode(is_ending=signals.is_requested, aside=line.aside)
+            _settle()
+            signals.hold()
+        finally:
+            line.end()
         try:
             with spinning(node) as spin_some:
                 node.begin()

@@ -4,8 +4,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 import shutil
 import sys
+import threading
 import time
 
 from .terminal import write
@@ -25,6 +28,7 @@ class StatusLine:
         self._in_place = sys.stdout.isatty()
         self._drawn = False
         self._next = 0.0
+        self._lock = threading.RLock()
 
     def is_due(self) -> bool:
         """Tell whether it is time to show the line again."""
@@ -37,10 +41,20 @@ class StatusLine:
         self._next = time.monotonic() + (_TERMINAL_PERIOD if self._in_place else _PLAIN_PERIOD)
         if self._in_place:
             width = shutil.get_terminal_size().columns - 1
-            write(sys.stdout, f'\r\x1b[K{text[:width]}')
-            self._drawn = True
+            with self._lock:
+                write(sys.stdout, f'\r\x1b[K{text[:width]}')
+                self._drawn = True
         else:
             write(sys.stdout, f'{text}\n')
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """Keep the line away while something else is written; from any thread."""
+        with self._lock:
+            if self._drawn:
+                write(sys.stdout, '\r\x1b[K')
+                self._drawn = False
+            yield
 
     def end(self):
         """Leave the line as it is and go on below it."""

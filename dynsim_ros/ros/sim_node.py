@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node: ties a run to ROS time, topics, commands, parameters and services."""
 
+from contextlib import nullcontext
+
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
@@ -14,6 +16,7 @@ from .context import one_line
 from .diagnostics import Diagnostics
 from .followed_clock import FollowedClock
 from .handles import handles_for
+from .log import Log
 from .message_types import message_class
 from .pacing import Pacer
 from .parameters import Parameters, refused
@@ -37,13 +40,14 @@ class SimNode(Node):
     """
     Simulates a scene in real time.
 
-    is_ending: function that tells whether the program was asked to end. Raises SceneError if a
-    parameter given at the start is wrong. The run ticks in the thread of a Ticker; callbacks are
-    served by another thread, and what they want of the run goes through the ticker's mailbox:
-    it is done at a tick boundary, and what it changes holds from there on.
+    is_ending: function that tells whether the program was asked to end; aside: as Log takes it.
+    Raises SceneError if a parameter given at the start is wrong. The run ticks in the thread of a
+    Ticker; callbacks are served by another thread, and what they want of the run goes through the
+    ticker's mailbox: it is done at a tick boundary, and what it changes holds from there on.
     """
 
-    def __init__(self, name='dynsim', is_ending=lambda: False):
+    def __init__(self, name='dynsim', is_ending=lambda: False, aside=nullcontext):
+        self._aside = aside
         try:
             super().__init__(name, automatically_declare_parameters_from_overrides=True)
         except ValueError as error:
@@ -94,6 +98,10 @@ class SimNode(Node):
                              self.parameters.own, lambda line: self.get_logger().warning(line))
         self.commands = Commands(self, self.run, self.ticker.mailbox)
         self.handles = handles_for(self, simulator.scene, self.commands.drag)
+
+    def get_logger(self):
+        """Return the logger of this node."""
+        return Log(super().get_logger(), self._aside)
 
     def begin(self):
         """

@@ -10,7 +10,7 @@ from tree import output_of, ROOT
 
 
 def test_it_prints_the_force_ten_times_a_second(start):
-    start()
+    node = start()
     text = output_of(
         [sys.executable, ROOT / 'examples' / 'print_spring_force.py', '--count', 4])
     number = r' +([+-]?\d+\.\d+)'
@@ -20,3 +20,5 @@ def test_it_prints_the_force_ten_times_a_second(start):
     assert [round(b - a, 6) for a, b in zip(times, times[1:])] == [0.1, 0.1, 0.1]
     # the spring is never longer than its natural length by as much again
     assert 0.0 < max(forces) < STIFFNESS * NATURAL_LENGTH
+    # the node itself says nothing where there is no terminal
+    assert node.stop() == ''

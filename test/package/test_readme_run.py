@@ -62,8 +62,13 @@ def lay_out(folder, page):
 @pytest.mark.parametrize('page', PAGES)
 def test_what_a_page_says_to_run_runs(desk, page):
     """From the top of a page down; the largest scene takes long to compile on a busy machine."""
+    output = ''
     for language, about, text in blocks(page):
         if about != 'run':
+            continue
+        if language == 'text':
+            # what the commands before it have printed
+            assert text in output
             continue
         script = {'sh': text, 'python': f"python - <<'END'\n{text}END"}[language]
         process = desk(page, script)

@@ -93,6 +93,8 @@ def test_duration(start, given, ticks):
         times = [message.log_time for _, _, message in make_reader(stream).iter_messages(
             topics=['/dynsim/sphere/pose'])]
     assert times == list(range(0, (ticks + 1) * period, period))
+    # plain lines, as this is no terminal
+    assert output.startswith('starting: ') and output.replace('\n', '').isprintable()
     assert output.splitlines()[-1].endswith(
         f'recorded {found.message_count} messages in runs/{node.bags[0].name}')
 
