@@ -30,6 +30,8 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE',
                        str(ROOT / 'config' / 'fastdds_one_machine.xml'))
+    # says how wide a terminal is, before that itself is asked
+    monkeypatch.delenv('COLUMNS', raising=False)
 
 
 def sim_node(values, *options):
