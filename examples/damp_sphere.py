@@ -27,31 +27,39 @@ REACH = 0.3                          # m: how far it may go, along each axis
 # stiffness; the centre of the sphere is 0.1 m below its end.
 STRETCH = WEIGHT[2] / 100.0
 ENERGY_AT_REST = WEIGHT[2] * (REST[2] - 0.5 - STRETCH - 0.1) + 50.0 * STRETCH ** 2
+EARLY = 0.5                          # s: what the first forces after a reset are stamped with
 TIMEOUT = 30.0                       # s
 
 
 class Damper:
-    """Moves the anchor by the force of the spring if `is_on`; energy: the last one heard [J]."""
+    """
+    Moves the anchor by the force of the spring if `is_on`.
+
+    time: of the last force of this run [s], energy: the last one heard [J]; None before the first.
+    """
 
     def __init__(self, node):
-        self.is_on = False
-        self.time, self.energy = 0.0, None
-        self._position, self._last = list(REST), None
+        self.begin(False)
+        self.is_heard = False
         self._hand = node.create_publisher(PointStamped, '/dynsim/hand/command', 1)
         node.create_subscription(WrenchStamped, '/dynsim/sphere/wrench/spring', self.feel, 10)
         node.create_subscription(Float64MultiArray, '/dynsim/energy', self.hear, 10)
 
     def begin(self, is_on):
         """Forget the last run, and be the controller of the next one or not."""
-        self.is_on, self.time, self.energy = is_on, 0.0, None
-        self._position, self._last = list(REST), None
+        self.is_on, self.time, self.energy = is_on, None, None
+        self._position = list(REST)
 
     def feel(self, message):
         """Give way to the force of the spring, less the weight that it carries at rest."""
         stamp, force = message.header.stamp, message.wrench.force
-        self.time = stamp.sec + 1e-9 * stamp.nanosec
-        step = 0.0 if self._last is None else min(max(self.time - self._last, 0.0), 0.05)
-        self._last = self.time
+        now = stamp.sec + 1e-9 * stamp.nanosec
+        self.is_heard = True
+        if self.time is None and now > EARLY:
+            # Still of the run before the reset.
+            return
+        step = 0.0 if self.time is None else min(max(now - self.time, 0.0), 0.05)
+        self.time = now
         if not self.is_on:
             return
         for i, pull in enumerate((force.x, force.y, force.z)):
@@ -72,18 +80,24 @@ class Damper:
 def swing(node, damper, is_on, duration):
     """Run for some simulated seconds from a reset; return the energy above rest at the end [J]."""
     reset = node.create_client(Trigger, '/dynsim/reset')
-    limit = time.monotonic() + TIMEOUT + 5.0 * duration
     if not reset.wait_for_service(timeout_sec=TIMEOUT):
         sys.exit('error: no node /dynsim was found; start one: make run')
+    spin_until(node, lambda: damper.is_heard, TIMEOUT)
     damper.begin(False)
-    done = reset.call_async(Trigger.Request())
-    rclpy.spin_until_future_complete(node, done, timeout_sec=TIMEOUT)
+    rclpy.spin_until_future_complete(node, reset.call_async(Trigger.Request()))
     damper.begin(is_on)
-    while damper.time < duration:
+    spin_until(node, lambda: damper.energy is not None and (damper.time or 0.0) >= duration,
+               TIMEOUT + 5.0 * duration)
+    return damper.energy - ENERGY_AT_REST
+
+
+def spin_until(node, condition, seconds):
+    """Serve what is heard until a condition holds; end the program if that takes too long."""
+    limit = time.monotonic() + seconds
+    while not condition():
         rclpy.spin_once(node, timeout_sec=0.1)
         if time.monotonic() > limit:
             sys.exit('error: no forces of the spring are heard: is the node paused?')
-    return damper.energy - ENERGY_AT_REST
 
 
 def main():

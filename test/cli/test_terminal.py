@@ -3,6 +3,7 @@
 """What programs draw on a terminal, and that they draw nothing anywhere else."""
 
 import fcntl
+from io import StringIO
 import os
 import pty
 import re
@@ -118,9 +119,23 @@ def test_simulate_and_replay_draw_a_bar():
     assert [row.partition(' ')[0] for row in rows(text)] == ['run.mcap:', 'replayed', '']
 
 
+class Terminal(StringIO):
+    """What a program takes for a terminal, within this process."""
+
+    def isatty(self):
+        return True
+
+
 def test_simulate_that_is_not_looked_at(capsys):
-    assert on_terminal(*SIMULATE, 'quiet.mcap', '--quiet') == (0, '')
     assert simulate([*SIMULATE[1:], 'run.mcap']) == 0
     written = capsys.readouterr()
     first, second = written.out.splitlines()
     assert (first + second).isprintable() and written.err == ''
+
+
+def test_a_quiet_simulate(monkeypatch):
+    monkeypatch.setattr(sys, 'stdout', Terminal())
+    assert simulate([*SIMULATE[1:], 'quiet.mcap', '--quiet']) == 0
+    assert sys.stdout.getvalue() == ''
+    assert simulate([*SIMULATE[1:], 'loud.mcap']) == 0
+    assert drawn(sys.stdout.getvalue())

@@ -65,3 +65,12 @@ def test_commands_are_run_here_or_elsewhere(page):
             example = re.match(r'tools/in_venv python examples/(\w+)\.py', command)
             assert command.startswith(ELSEWHERE) or (
                 example and list((ROOT / 'test').rglob(f'test_{example.group(1)}.py'))), command
+
+
+def test_every_example_is_shown_and_tested():
+    page = PAGES['docs/examples.md']
+    run = ''.join(text for _, about, text in blocks('docs/examples.md') if about == 'run')
+    for path in (ROOT / 'examples').glob('*.*'):
+        assert f'](../examples/{path.name})' in page
+        assert f'examples/{path.name}' in run or (
+            ROOT / 'test' / 'examples' / f'test_{path.stem}.py').exists(), path
