@@ -15,6 +15,7 @@ import time
 
 from geometry_msgs.msg import PointStamped, WrenchStamped
 import rclpy
+from rclpy.executors import ExternalShutdownException
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Trigger
 
@@ -108,11 +109,13 @@ def main():
     rclpy.init()
     node = rclpy.create_node('damp_sphere')
     damper = Damper(node)
-    for is_on, name in ((False, 'by itself'), (True, 'with the controller')):
-        left = swing(node, damper, is_on, duration)
-        print(f'{name + ":":21}{left:.3f} J above rest after {duration:g} s', flush=True)
-    node.destroy_node()
-    rclpy.shutdown()
+    try:
+        for is_on, name in ((False, 'by itself'), (True, 'with the controller')):
+            left = swing(node, damper, is_on, duration)
+            print(f'{name + ":":21}{left:.3f} J above rest after {duration:g} s', flush=True)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        print('stopped')
+    rclpy.try_shutdown()
 
 
 if __name__ == '__main__':

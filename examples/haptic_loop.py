@@ -20,6 +20,7 @@ import time
 from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
 try:
     from rclpy.experimental.events_executor import EventsExecutor as Executor
 except ImportError:
@@ -112,13 +113,18 @@ def main():
     duration = parser.parse_args().duration
     simulation = subprocess.Popen([sys.executable, '-m', 'dynsim_ros.cli.sim_node', '-q',
                                    '--ros-args', '-p', f'rate:={RATE}'])
-    rclpy.init()
+    # Ctrl-C ends the simulation, and with it the loop.
+    stopped = []
+    signal.signal(signal.SIGINT, lambda *_: stopped.append(simulation.send_signal(signal.SIGINT)))
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         hand = close_loop(duration, simulation)
     finally:
         simulation.send_signal(signal.SIGINT)
         simulation.wait()
         rclpy.try_shutdown()
+    if stopped:
+        return
     if len(hand.trips) < 2:
         sys.exit('error: no round trip: the simulation ended, or nothing was heard of it')
     trips = statistics.quantiles(hand.trips, n=100)
