@@ -37,11 +37,12 @@ class ByHand:
     """
     A scene and a method: a name of RULES, or of a method of fixed step.
 
-    stages: how many sequences are extrapolated, as many as in the package unless given; drive:
-    fields of Drive that are not as for a run without commands.
+    sequences: what the schedule of an extrapolation is made from, as in the package unless given:
+    substeps, then perhaps stages; drive: fields of Drive that are not as for a run without
+    commands.
     """
 
-    def __init__(self, scene, method, stages=None, **drive):
+    def __init__(self, scene, method, sequences=(), **drive):
         self.model, self.method = build_model(scene), method
         self.start = initial_state(scene, self.model)
         self.drive = undisturbed_drive(scene)._replace(**drive)
@@ -50,7 +51,7 @@ class ByHand:
         self.memory = new_memory(len(self.start), len(scene.springs))
         if method in RULES:
             self._take, schedule = RULES[method]
-            self.plan = schedule() if stages is None else schedule(stages)
+            self.plan = schedule(*sequences)
 
     def rates(self, t, y):
         """Return dy/dt; y: (size,) or longer."""

@@ -22,6 +22,7 @@ from .linearly_implicit import linearly_implicit_substep
 from .memory import DENSE_SIZE, lane_row, STAGES
 from .radau import dense_radau
 from .radau_tableau import nodes
+from .rational import inverse
 from ..physics.arms import arm_of_state, begin_arm, swap_arms, with_arm
 from ..physics.fused import fused
 from ..physics.jit import formula, part
@@ -34,7 +35,7 @@ _FOURS = DENSE_SIZE // COUNT
 # Instants within a step, on s: near the roots of the polynomials that are best for either.
 _EXPLICIT_NODES = [Fraction(s, 100) for s in (-77, -29, 29, 77)]
 _STIFF_NODES = [Fraction(s, 100) for s in (-92, -74, -48, -16, 16, 48, 74, 92)]
-_EXPLICIT_STAGES = 5
+_EXPLICIT_STAGES = 6
 _STIFF_STAGES = 7
 
 
@@ -49,23 +50,8 @@ def _powers(nodes, derivatives):
     count = len(nodes) + len(derivatives)
     rows = [[s ** d for d in range(count)] for s in nodes]
     rows += [[d * s ** (d - 1) if d else Fraction(0) for d in range(count)] for s in derivatives]
-    inverse = _inverse(rows)
-    return [[row[nodes.index(s)] for s in nodes_used] + row[len(nodes):] for row in inverse]
-
-
-def _inverse(rows):
-    """Return the inverse of a matrix of fractions."""
-    count = len(rows)
-    rows = [list(row) + [Fraction(int(i == j)) for j in range(count)]
-            for i, row in enumerate(rows)]
-    for i in range(count):
-        pivot = next(k for k in range(i, count) if rows[k][i])
-        rows[i], rows[pivot] = rows[pivot], rows[i]
-        rows[i] = [x / rows[i][i] for x in rows[i]]
-        for k in range(count):
-            if k != i and rows[k][i]:
-                rows[k] = [x - rows[k][i] * y for x, y in zip(rows[k], rows[i])]
-    return [row[count:] for row in rows]
+    return [[row[nodes.index(s)] for s in nodes_used] + row[len(nodes):]
+            for row in inverse(rows)]
 
 
 # Places of the parts of the tables: the instants, the weights of the sequences, then a column for
@@ -85,7 +71,7 @@ def explicit_table():
     table[:COUNT] = [(s + 1) / 2 if s < 0 else (s - 1) / 2 for s in _EXPLICIT_NODES]
     table[COUNT:2 * COUNT] = [float(s < 0) for s in _EXPLICIT_NODES]
     substeps = list(range(2, 2 * _EXPLICIT_STAGES + 1, 2))
-    weights = extrapolation_weights(substeps, 2)
+    weights = extrapolation_weights(substeps, 2, _EXPLICIT_STAGES)
     table[_SEQUENCES:_SEQUENCES + len(substeps)] = [weights[n] for n in substeps]
     for d, row in enumerate(_powers(nodes, nodes)):
         values, rates_ = row[:5], row[5:]
@@ -101,7 +87,7 @@ def stiff_table():
     table = np.zeros(_COLUMNS + DENSE_SIZE * (_AT_END + 1))
     table[:2 * COUNT] = [(s + 1) / 2 for s in _STIFF_NODES]
     substeps = list(range(1, _STIFF_STAGES + 1))
-    weights = extrapolation_weights(substeps, 1)
+    weights = extrapolation_weights(substeps, 1, _STIFF_STAGES)
     table[_SEQUENCES:_SEQUENCES + len(substeps)] = [weights[n] for n in substeps]
     for d, row in enumerate(_powers(nodes, [])):
         table[_COLUMNS + d::DENSE_SIZE] = row

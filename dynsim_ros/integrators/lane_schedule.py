@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import rational
 from ..physics.fused import fused
 from ..physics.jit import formula
 from ..physics.lanes import COUNT, lanes_at, total
@@ -27,10 +28,11 @@ class Schedule(NamedTuple):
     """
     Sequences in lanes.
 
-    stages: how many extrapolation columns; rows: how many evaluations in a row a lane takes;
-    first_end: the first row in which a sequence ends; table: (ENDS + 8 rows,): substeps of the
-    first and of the second sequence of each lane, their weights in the result and in the error
-    estimate, then for each row 1 where a first sequence ends, then the same for the second ones.
+    stages: one more than powers of the error are taken away; rows: how many evaluations a lane
+    takes, one after the other; first_end: the first row in which a sequence ends; table: (ENDS +
+    8 rows,): substeps of the first and of the second sequence of each lane, their weights in the
+    result and in the error estimate, then for each row 1 where a first sequence ends, then the
+    same for the second ones.
     """
 
     stages: int
@@ -54,26 +56,31 @@ def combine(table, size, y, first, second, y_new, error):
         error[i] = total(fused(e_1, first[i], e_2 * second[i]))
 
 
-def extrapolation_weights(substeps, power):
-    """Return {n: weight} of the value at step length 0; the error has powers of h^power."""
-    weights = {}
-    for n in substeps:
-        product = Fraction(1)
-        for other in substeps:
-            if other != n:
-                product *= Fraction(n ** power, n ** power - other ** power)
-        weights[n] = product
-    return weights
+def extrapolation_weights(substeps, power, stages):
+    """
+    Return {n: weight} of the value at step length 0; the error has powers of h^power.
+
+    They take the first stages - 1 of these powers away. Where there are more sequences than
+    stages, they are those that let the least rounding through: a sequence of n substeps has some
+    that is as 1 / sqrt(n).
+    """
+    def moment(j):
+        return rational.total(Fraction(n, n ** (power * j)) for n in substeps)
+    moments = [[moment(j + k) for k in range(stages)] for j in range(stages)]
+    factors = [row[0] for row in rational.inverse(moments)]
+    return {n: rational.total(factor * Fraction(n, n ** (power * j))
+                              for j, factor in enumerate(factors)) for n in substeps}
 
 
-def schedule(substeps, power, evaluations):
+def schedule(substeps, power, evaluations, stages=None):
     """
     Return the Schedule of some sequences.
 
     substeps: ascending; power: 1 or 2, of the error expansion; evaluations(n): how many rows a
-    sequence of n substeps takes. The error estimate is the difference to the result without the
-    first sequence.
+    sequence of n substeps takes; stages: as many as there are sequences, unless given. The error
+    estimate is the difference to the result without the first sequence, of one stage less.
     """
+    stages = len(substeps) if stages is None else stages
     lanes = [[] for _ in range(COUNT)]
     for lane, n in zip(lanes, reversed(substeps)):
         lane.append(n)
@@ -87,8 +94,8 @@ def schedule(substeps, power, evaluations):
         else:
             min(free, key=lambda lane: _load(lane, evaluations)).append(n)
     rows = max(_load(lane, evaluations) for lane in lanes)
-    weights = extrapolation_weights(substeps, power)
-    lower = {substeps[0]: Fraction(0)} | extrapolation_weights(substeps[1:], power)
+    weights = extrapolation_weights(substeps, power, stages)
+    lower = {substeps[0]: Fraction(0)} | extrapolation_weights(substeps[1:], power, stages - 1)
     table = np.zeros(ENDS + 2 * COUNT * rows)
     # A lane without a sequence takes tiny substeps that nobody looks at.
     table[FIRST:FIRST + 2 * COUNT] = 1e3
@@ -99,7 +106,7 @@ def schedule(substeps, power, evaluations):
             table[FIRST_ERROR + COUNT * place + i] = weights[n] - lower[n]
             end = _load(lane[:place + 1], evaluations) - 1
             table[ENDS + COUNT * (place * rows + end) + i] = 1.0
-    return Schedule(len(substeps), rows,
+    return Schedule(stages, rows,
                     min(evaluations(lane[0]) for lane in lanes if lane) - 1, table)
 
 

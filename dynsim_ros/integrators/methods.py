@@ -11,7 +11,7 @@ from . import (dop853_tableau, explicit_euler, explicit_euler_axis_angle, leapfr
                linearly_implicit_euler, radau_tableau, rk4, semi_implicit_euler)
 from .adaptive import Tableaux
 from .dense_output import explicit_table, radau_table, stiff_table
-from .gragg import gragg_schedule, STAGES
+from .gragg import FINE_STAGES, FINE_SUBSTEPS, gragg_schedule
 from .stiff import stiff_schedule
 from .stormer import stormer_schedule
 from ..scene import did_you_mean, SceneError
@@ -45,8 +45,8 @@ class Method:
 
 METHODS = {method.name: method for method in (
     Method('auto', None, 'closed forms, extrapolation or stiff, whatever the motion asks for'),
-    Method('extrapolation', 16, 'error-controlled; extrapolated midpoint rule (order 12 where '
-           'rounding counts; for particles on springs without losses: rule of Störmer, order 14)'),
+    Method('extrapolation', 14, 'error-controlled; extrapolated midpoint rule (order 12 where '
+           'rounding counts; for particles on springs without losses: rule of Störmer)'),
     Method('stiff', 7,
            'error-controlled; extrapolated linearly implicit Euler, for stiff springs'),
     Method('radau', 15, 'error-controlled; Radau IIA with 8 stages, for stiff springs, exact'),
@@ -74,9 +74,18 @@ def method_named(name):
 
 
 @lru_cache
-def extrapolation(stages=STAGES):
-    """Return the Adaptive of Gragg's rule, of order 2 stages."""
-    plan = gragg_schedule(stages)
+def extrapolation():
+    """Return the Adaptive of Gragg's rule."""
+    return _gragg(gragg_schedule())
+
+
+@lru_cache
+def fine_extrapolation():
+    """Return the Adaptive of Gragg's rule for tolerances at which rounding counts."""
+    return _gragg(gragg_schedule(FINE_SUBSTEPS, FINE_STAGES))
+
+
+def _gragg(plan):
     return Adaptive(Tableaux(plan, None, None, None, None, explicit_table()),
                     2.0 * plan.stages - 1.0)
 

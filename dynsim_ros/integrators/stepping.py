@@ -13,8 +13,8 @@ from .stiffness import drag_rate, spring_rates
 # steps cost ten times as much; the cost of these grows with the cube of the number of springs, and
 # their iteration does not know of the drag.
 _COARSE, _MANY = 3e-4, 4
-# Below this tolerance rounding counts: the weights of fewer sequences are smaller.
-_FINE, _FINE_STAGES = 3e-12, 6
+# Below this tolerance rounding counts.
+_FINE = 3e-11
 
 
 def needs_no_velocity(model):
@@ -27,7 +27,7 @@ def explicit_method(model, tolerance):
     """Return the Adaptive that extrapolation means for a model."""
     if needs_no_velocity(model):
         return methods.stormer_extrapolation()
-    return methods.extrapolation(_FINE_STAGES) if tolerance < _FINE else methods.extrapolation()
+    return methods.fine_extrapolation() if tolerance < _FINE else methods.extrapolation()
 
 
 def stiff_method(model, springs, tolerance):

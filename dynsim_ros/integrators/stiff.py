@@ -16,12 +16,12 @@ from .memory import lane_row
 from ..physics.jit import formula
 from ..physics.lanes import choose, COUNT, lanes_at, spread
 
-STAGES = 7
+SUBSTEPS = (1, 2, 3, 4, 5, 6, 7)
 
 
-def stiff_schedule(stages=STAGES):
-    """Return the Schedule of the method of order `stages`."""
-    return schedule(list(range(1, stages + 1)), 1, lambda n: n)
+def stiff_schedule(substeps=SUBSTEPS, stages=None):
+    """Return the Schedule of the method whose order is stages; see lane_schedule.schedule."""
+    return schedule(substeps, 1, lambda n: n, stages)
 
 
 @formula

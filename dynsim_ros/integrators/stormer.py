@@ -18,12 +18,12 @@ from ..physics.lanes import choose, COUNT, lanes_at, spread
 from ..physics.motion import accelerations
 from ..physics.state import counts
 
-STAGES = 7
+SUBSTEPS = (1, 2, 3, 4, 5, 6, 7)
 
 
-def stormer_schedule(stages=STAGES):
-    """Return the Schedule of the method of order 2 stages."""
-    return schedule(list(range(1, stages + 1)), 2, lambda n: n)
+def stormer_schedule(substeps=SUBSTEPS, stages=None):
+    """Return the Schedule of the method of order 2 stages; see lane_schedule.schedule."""
+    return schedule(substeps, 2, lambda n: n, stages)
 
 
 @formula

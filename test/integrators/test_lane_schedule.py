@@ -4,6 +4,7 @@
 
 from fractions import Fraction
 
+from dynsim_ros.integrators import gragg, stiff, stormer
 from dynsim_ros.integrators.gragg import gragg_schedule
 from dynsim_ros.integrators.lane_schedule import (ENDS, extrapolation_weights, FIRST, FIRST_ERROR,
                                                   FIRST_WEIGHT, SECOND, SECOND_ERROR,
@@ -14,10 +15,15 @@ import numpy as np
 import pytest
 
 # What a sequence of n substeps takes beyond the rate at the start, and powers of h in its error.
-RULES = {'gragg': (gragg_schedule, lambda k: 2 * k, lambda n: n - 1, 2),
-         'stormer': (stormer_schedule, lambda k: k, lambda n: n, 2),
-         'stiff': (stiff_schedule, lambda k: k, lambda n: n, 1)}
-ALL = [(rule, stages) for rule in RULES for stages in range(2, 9)]
+RULES = {'gragg': (gragg_schedule, lambda n: n - 1, 2),
+         'stormer': (stormer_schedule, lambda n: n, 2),
+         'stiff': (stiff_schedule, lambda n: n, 1)}
+ALL = [('gragg', range(2, 2 * k + 1, 2), k) for k in range(2, 9)]
+ALL += [(rule, range(1, k + 1), k) for rule in ('stormer', 'stiff') for k in range(2, 9)]
+ALL += [('gragg', gragg.SUBSTEPS, len(gragg.SUBSTEPS)),
+        ('gragg', gragg.FINE_SUBSTEPS, gragg.FINE_STAGES),
+        ('stormer', stormer.SUBSTEPS, len(stormer.SUBSTEPS)),
+        ('stiff', stiff.SUBSTEPS, len(stiff.SUBSTEPS))]
 
 
 def sequences(plan):
@@ -38,13 +44,13 @@ def ends(plan):
     return plan.table[ENDS:].reshape(2, plan.rows, 4)
 
 
-@pytest.mark.parametrize('rule, stages', ALL)
-def test_every_sequence_is_in_one_lane_and_ends_where_its_last_row_is(rule, stages):
-    schedule, substeps, evaluations, _ = RULES[rule]
-    plan = schedule(stages)
+@pytest.mark.parametrize('rule, substeps, stages', ALL)
+def test_every_sequence_is_in_one_lane_and_ends_where_its_last_row_is(rule, substeps, stages):
+    schedule, evaluations, _ = RULES[rule]
+    plan = schedule(substeps, stages)
     found = sequences(plan)
     assert plan.stages == stages
-    assert sorted(found) == [substeps(k) for k in range(1, stages + 1)]
+    assert sorted(found) == list(substeps)
     lanes = np.zeros(4)
     for place in range(2):
         for n, (_, _, lane, where) in found.items():
@@ -53,23 +59,24 @@ def test_every_sequence_is_in_one_lane_and_ends_where_its_last_row_is(rule, stag
                 rows = ends(plan)[place, :, lane]
                 assert np.flatnonzero(rows).tolist() == [lanes[lane] - 1]
     assert lanes.max() == plan.rows
-    assert ends(plan).sum() == stages
+    assert ends(plan).sum() == len(substeps)
     assert plan.first_end == np.flatnonzero(ends(plan)[0].any(axis=1))[0]
 
 
-@pytest.mark.parametrize('rule, stages', ALL)
-def test_no_lane_takes_longer_than_the_longest_sequence_or_half_of_them_all(rule, stages):
-    schedule, substeps, evaluations, _ = RULES[rule]
-    each = [evaluations(substeps(k)) for k in range(1, stages + 1)]
-    assert schedule(stages).rows <= max(max(each), sum(each) / 2)
+@pytest.mark.parametrize('rule, substeps, stages', ALL)
+def test_no_lane_takes_longer_than_the_longest_or_half_of_them_all(rule, substeps, stages):
+    schedule, evaluations, _ = RULES[rule]
+    each = [evaluations(n) for n in substeps]
+    assert schedule(substeps, stages).rows <= max(max(each), sum(each) / 2)
 
 
-@pytest.mark.parametrize('rule, stages', ALL)
-def test_the_weights_take_all_powers_of_the_error_away_but_the_last(rule, stages):
+@pytest.mark.parametrize('rule, substeps, stages', ALL)
+def test_the_weights_take_all_powers_of_the_error_away_but_the_last(rule, substeps, stages):
     """What each sequence gives is a polynomial in its (1 / n)^power, wanted is that at 0."""
-    schedule, _, _, power = RULES[rule]
-    n = np.array(sorted(sequences(schedule(stages))))
-    weights, errors = np.array([sequences(schedule(stages))[m][:2] for m in n]).T
+    schedule, _, power = RULES[rule]
+    found = sequences(schedule(substeps, stages))
+    n = np.array(sorted(found))
+    weights, errors = np.array([found[m][:2] for m in n]).T
     for j in range(stages):
         terms = weights * n ** (-float(power * j))
         assert terms.sum() == pytest.approx(float(j == 0), abs=1e-15 * np.abs(terms).sum())
@@ -86,7 +93,17 @@ def test_the_weights_are_those_of_aitken_and_neville(power):
     for k in range(1, len(substeps)):
         ratios = [Fraction(*pair) ** power for pair in zip(substeps[k:], substeps)]
         row = [combined(*entries) for entries in zip(row[1:], row, ratios)]
-    assert row == [extrapolation_weights(substeps, power)]
+    assert row == [extrapolation_weights(substeps, power, len(substeps))]
+
+
+@pytest.mark.parametrize('power', [1, 2])
+def test_more_sequences_than_stages_let_the_least_rounding_through(power):
+    """Of all weights that extrapolate as far, numpy finds those of the least sum w^2 / n."""
+    n, stages = np.array([2.0, 3.0, 4.0, 6.0, 7.0]), 3
+    powers = n ** (-float(power) * np.arange(stages)[:, None])
+    least = np.linalg.lstsq(powers * np.sqrt(n), np.eye(stages)[0], rcond=None)[0] * np.sqrt(n)
+    found = extrapolation_weights([2, 3, 4, 6, 7], power, stages)
+    np.testing.assert_allclose([float(found[int(m)]) for m in n], least, rtol=1e-10)
 
 
 def combined(now, before, ratio):
