@@ -86,10 +86,11 @@ def test_a_command_that_nobody_sees(start, connect):
     time.sleep(0.3)
     tick = int(client.pause().message.split()[3].rstrip(','))
     client.listen({'sphere/pose': POSE})
-    (message,) = client.steps(1, 'sphere/pose')
+    # on a busy machine the command may come after the pause: what it changes is published again
+    *_, message = client.steps(1, 'sphere/pose')
     found = positions([message]).tolist()[0]
     # it took effect at one of the ticks between, and at none else
-    assert found in [after_command(at, tick + 1) for at in range(max(tick - 1500, 0), tick + 1)]
+    assert found in [after_command(at, tick + 1) for at in range(max(tick - 1500, 0), tick + 2)]
 
 
 def after_command(at, ticks):
