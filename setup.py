@@ -7,6 +7,7 @@ from setuptools import find_packages, setup
 
 NAME = 'dynsim_ros'
 SHARE = f'share/{NAME}'
+MATPLOTLIB = 'matplotlib>=3.6,<4'
 
 
 def version():
@@ -55,7 +56,8 @@ setup(
             'ros-jazzy-common-interfaces>=5.3,<5.4',
             'ros-jazzy-rclpy[fastrtps]>=7.1,<7.2',
         ],
-        'bench': ['matplotlib>=3.6,<4', 'scipy>=1.9,<2'],
+        'plot': [MATPLOTLIB],
+        'bench': [MATPLOTLIB, 'scipy>=1.9,<2'],
         # What the benchmarks compare with: tools/set_up installs each of them if it can be had.
         'peers': [
             'drake>=1.20,<2',
@@ -73,9 +75,10 @@ setup(
             'flake8-docstrings>=1.6,<2',
             'flake8-import-order>=0.18,<1',
             'flake8-quotes>=3.3,<4',
-            'matplotlib>=3.6,<4',
+            MATPLOTLIB,
             'mcap-ros2-support>=0.5,<1',
             'mpmath>=1.2,<2',
+            'pandas>=2,<4',
             'pytest>=7.4,<9',
             'pytest-timeout>=2.1,<3',
             'pytest-xdist>=3,<4',
@@ -87,6 +90,8 @@ setup(
     },
     entry_points={
         'console_scripts': [
+            f'export = {NAME}.cli.export:main',
+            f'plot = {NAME}.cli.plot:main',
             f'replay = {NAME}.cli.replay:main',
             f'sim_node = {NAME}.cli.sim_node:main',
             f'simulate = {NAME}.cli.simulate:main',

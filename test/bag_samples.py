@@ -4,7 +4,9 @@
 
 from dynsim_ros.bag.writer import BagWriter
 from dynsim_ros.messages.cdr import encode
+from dynsim_ros.messages.definitions import definition
 from dynsim_ros.messages.qos import LATCHED, STATE
+from mcap.writer import IndexType, Writer
 
 TOPICS = {
     '/sample/pose': ('geometry_msgs/msg/PoseStamped', STATE),
@@ -12,6 +14,14 @@ TOPICS = {
     '/sample/epoch': ('std_msgs/msg/UInt64', LATCHED),
 }
 STEP = 10_000_000  # ns
+# Options of mcap.Writer.
+KINDS_OF_MCAP = [
+    {}, {'use_chunking': False}, {'index_types': IndexType.NONE},
+    {'index_types': IndexType.CHUNK}, {'repeat_channels': False, 'repeat_schemas': False},
+    {'use_statistics': False}, {'use_summary_offsets': False}, {'enable_crcs': False},
+    {'use_statistics': False, 'repeat_channels': False, 'repeat_schemas': False,
+     'use_summary_offsets': False, 'index_types': IndexType.NONE},
+]
 
 
 def sample_messages(count=100, step=STEP):
@@ -39,3 +49,24 @@ def write_sample(path, count=100, step=STEP, **options):
         for topic, stamp, data in messages:
             writer.write(channels[topic], stamp, data)
     return messages
+
+
+def write_foreign(path, messages, profiles=None, **options):
+    """Write messages with the plain MCAP writer; `profiles` adds a channel for each."""
+    options.setdefault('chunk_size', 1000)
+    with open(path, 'wb') as stream:
+        writer = Writer(stream, **options)
+        writer.start('ros2')
+        channels = {}
+        for topic, (type_name, _) in TOPICS.items():
+            schema = writer.register_schema(
+                type_name, 'ros2msg', definition(type_name).text.encode())
+            channels[topic] = [
+                writer.register_channel(topic, 'cdr', schema, {'offered_qos_profiles': profile})
+                for profile in profiles or ['']]
+        for number, (topic, stamp, data) in enumerate(messages):
+            channel = channels[topic][number % len(channels[topic])]
+            writer.add_message(channel, stamp, data, stamp)
+        writer.add_metadata('note', {'a': 'b'})
+        writer.add_attachment(0, 0, 'x.txt', 'text/plain', b'x')
+        writer.finish()

@@ -7,6 +7,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from functools import cached_property
 from heapq import merge
 from io import BytesIO
@@ -16,6 +17,7 @@ from pathlib import Path
 from mcap.data_stream import ReadDataStream
 from mcap.records import Attachment
 
+from .index import Block
 from .records import DamagedChunk, messages_in
 from .sources import BagError, open_sources, Source
 from ..messages.qos import offered, Qos
@@ -108,6 +110,32 @@ class Bag:
                        for source, by_id in zip(self._sources, self._topics, strict=True)),
                      key=lambda message: message[1])
 
+    def matching(self, patterns: Collection[str]) -> list[str]:
+        """
+        Return the topics that match names or patterns with * and ?, each once; all for none.
+
+        A name may lack its beginning: 'sphere/pose' matches '/dynsim/sphere/pose'. Raises BagError
+        for one that matches nothing.
+        """
+        found = []
+        for pattern in patterns:
+            matches = [topic for topic in self.channels if fnmatchcase(topic, pattern)] or [
+                topic for topic in self.channels if fnmatchcase(topic, f'*/{pattern}')]
+            if not matches:
+                raise BagError(f"no topic '{pattern}' in {self.path}: it has "
+                               + ', '.join(sorted(self.channels)))
+            found += matches
+        return list(dict.fromkeys(found if patterns else self.channels))
+
+    def files(self) -> Iterator[tuple[Source, dict[int, str]]]:
+        """Yield the files in order, each with the topics of its channels by id."""
+        return zip(self._sources, self._topics, strict=True)
+
+    def report_damage(self, source: Source, block: Block, error: DamagedChunk):
+        """Let `problem` tell that not all of a block could be read."""
+        self._report(source, f'the chunk at byte {block.start} is damaged ({error}): not all '
+                     'messages could be read')
+
     def close(self):
         """Close the files."""
         for source in self._sources:
@@ -168,8 +196,7 @@ class Bag:
                         ahead.append((message.log_ns, block.start, number, message.channel_id,
                                       message.data))
             except DamagedChunk as error:
-                self._report(source, f'the chunk at byte {block.start} is damaged ({error}): '
-                             'not all messages could be read')
+                self.report_damage(source, block, error)
             ahead.sort()
         yield from ahead
 

@@ -13,6 +13,7 @@ import time
 
 def main(args=None) -> int:
     """Compile; return 0, or 2 with an error on stderr."""
+    from ..bag.load_kernel import prepare_finding
     from ..bag.pack_rows import prepare_packing
     from ..scene import load_scene
     from ..simulation import Simulator
@@ -22,6 +23,7 @@ def main(args=None) -> int:
         try:
             Simulator(load_scene(name)).prepare()
             prepare_packing()
+            prepare_finding()
         except ValueError as error:
             print(f'error: {error}', file=sys.stderr)
             return 2

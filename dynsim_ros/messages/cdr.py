@@ -8,13 +8,13 @@ Messages are nested dicts: `{'header': {'frame_id': 'world'}, 'point': {'x': 1.0
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import struct
 
 from .checks import check_elements, fields_for
-from .definitions import definition, Field
+from .definitions import Field, installed_fields
 from .primitives import (
-    BIG_ENDIAN,
+    byte_order,
     BYTE_TYPES,
     code,
     LITTLE_ENDIAN,
@@ -40,14 +40,16 @@ def encode(type_name: str, value: Mapping | None = None) -> bytes:
     return bytes(out)
 
 
-def decode(type_name: str, data: bytes) -> dict:
+def decode(type_name: str, data: bytes,
+           fields_of: Callable[[str], tuple[Field, ...]] = installed_fields) -> dict:
     """
     Return the message that CDR bytes of either byte order hold, every field present.
 
-    Sequences and arrays of bytes are `bytes`, other ones lists; a `byte` is an int. Raises
-    ValueError for data that end too early or are not plain CDR.
+    fields_of: as recorded_fields returns it, for types as a bag describes them. Sequences and
+    arrays of bytes are `bytes`, other ones lists; a `byte` is an int. Raises ValueError for data
+    that end too early or are not plain CDR.
     """
-    return _Reader(type_name, data).message(type_name, type_name)
+    return _Reader(type_name, data, fields_of).message(type_name, type_name)
 
 
 def _put_message(out: bytearray, type_name: str, value: Mapping, path: str):
@@ -104,19 +106,17 @@ def _zero(field: Field):
 class _Reader:
     """Reads the values of one message one behind the other."""
 
-    def __init__(self, type_name: str, data: bytes):
+    def __init__(self, type_name: str, data: bytes, fields_of):
         """Check the header and note the byte order."""
-        if data[:2] not in (LITTLE_ENDIAN[:2], BIG_ENDIAN[:2]) or len(data) < 4:
-            raise ValueError(f'{type_name}: the data are not plain CDR, they begin with '
-                             f'{bytes(data[:4]).hex(" ") or "nothing"}')
-        self._order = '<' if data[1] else '>'
+        self._order = byte_order(type_name, data)
+        self._fields_of = fields_of
         self._type_name = type_name
         self._data = memoryview(data)[4:]
         self._at = 0
 
     def message(self, type_name: str, path: str) -> dict:
         """Return the next message as a dict."""
-        fields = definition(type_name).fields
+        fields = self._fields_of(type_name)
         if not fields:
             self._take(1, 1, path)
         return {field.name: self._field(field, f'{path}.{field.name}') for field in fields}

@@ -85,6 +85,11 @@ def definition(type_name: str) -> MessageDefinition:
     return MessageDefinition(type_name, '\n'.join(parts), _type_hash(path, type_name), fields)
 
 
+def installed_fields(type_name: str) -> tuple[Field, ...]:
+    """Return the fields of a type as it is installed here."""
+    return definition(type_name).fields
+
+
 def _msg_file(type_name: str) -> Path:
     """Return the .msg file of a type, or raise an error that says where it was looked for."""
     match = _TYPE_NAME.fullmatch(type_name)
@@ -118,15 +123,23 @@ def _prefixes(package: str) -> list[Path]:
 @cache
 def _read(type_name: str, path: Path) -> tuple[str, tuple[Field, ...]]:
     """Return a .msg file's text and its fields."""
-    package, _, name = type_name.split('/')
     try:
         text = path.read_text(encoding='utf-8')
-        fields = parser.parse_message_string(package, name, text).fields
-    except (OSError, ValueError, TypeError, NameError, parser.InvalidSpecification,
-            parser.InvalidValue) as error:
+    except (OSError, UnicodeDecodeError) as error:
         raise MessageDefinitionError(
             f"the definition of '{type_name}' in {path} cannot be read: {error}") from None
-    return text, tuple(map(_field, fields))
+    return text, parse_fields(type_name, text, str(path))
+
+
+def parse_fields(type_name: str, text: str, origin: str) -> tuple[Field, ...]:
+    """Return the fields that the text of a .msg file declares; origin: where it stands."""
+    package, _, name = type_name.split('/')
+    try:
+        return tuple(map(_field, parser.parse_message_string(package, name, text).fields))
+    except (ValueError, TypeError, NameError, parser.InvalidSpecification,
+            parser.InvalidValue) as error:
+        raise MessageDefinitionError(
+            f"the definition of '{type_name}' in {origin} cannot be read: {error}") from None
 
 
 def _field(parsed: parser.Field) -> Field:

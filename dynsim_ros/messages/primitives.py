@@ -43,3 +43,11 @@ def code(type_name, path):
         return CODES[type_name]
     except KeyError:
         raise ValueError(f'{path}: type {type_name} is not supported') from None
+
+
+def byte_order(type_name, data):
+    """Return '<' or '>', as CDR bytes tell by their header; raise ValueError for other bytes."""
+    if data[:2] not in (LITTLE_ENDIAN[:2], BIG_ENDIAN[:2]) or len(data) < len(LITTLE_ENDIAN):
+        raise ValueError(f'{type_name}: the data are not plain CDR, they begin with '
+                         f'{bytes(data[:4]).hex(" ") or "nothing"}')
+    return '<' if data[1] else '>'

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 import time
 
 from builtin_interfaces.msg import Time
@@ -145,18 +144,11 @@ class Replayer:
 
     def _selected(self) -> list[str]:
         """Return the recorded topics that are wanted."""
-        wanted = []
-        for pattern in self._options.topics:
-            found = [topic for topic in self._bag.channels if fnmatchcase(topic, pattern)]
-            if not found:
-                raise ReplayError(f"no topic '{pattern}' in {self._bag.path}: {self._known()}")
-            wanted += found
-        if not self._options.topics:
-            wanted = list(self._bag.channels)
+        wanted = self._bag.matching(self._options.topics)
         if self._options.clock_hz and self._options.remap.get('/clock', '/clock') == '/clock':
             # The clock of this replay replaces the recorded one.
             wanted = [topic for topic in wanted if topic != '/clock']
-        return list(dict.fromkeys(wanted))
+        return wanted
 
     def _known(self) -> str:
         """Return a clause that names the bag's topics."""

@@ -1,11 +1,11 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-from bag_samples import sample_messages, TOPICS, write_sample
+from bag_samples import KINDS_OF_MCAP, sample_messages, TOPICS, write_foreign, write_sample
 from dynsim_ros.bag.reader import BagError, open_bag
 from dynsim_ros.messages.cdr import decode
 from dynsim_ros.messages.definitions import definition
 from dynsim_ros.messages.qos import LATCHED, Qos
-from mcap.writer import CompressionType, IndexType, Writer
+from mcap.writer import CompressionType, Writer
 from mcap_ros2.writer import Writer as Ros2Writer
 import pytest
 from rosbags.interfaces import Qos as RosbagsQos
@@ -106,35 +106,8 @@ def test_mcap_ros2_files(tmp_path):
                     (number * 1000, number) for number in range(10)]
 
 
-def write_foreign(path, messages, profiles=None, **options):
-    """Write messages with the plain MCAP writer; `profiles` adds a channel for each."""
-    options.setdefault('chunk_size', 1000)
-    with open(path, 'wb') as stream:
-        writer = Writer(stream, **options)
-        writer.start('ros2')
-        channels = {}
-        for topic, (type_name, _) in TOPICS.items():
-            schema = writer.register_schema(
-                type_name, 'ros2msg', definition(type_name).text.encode())
-            channels[topic] = [
-                writer.register_channel(topic, 'cdr', schema, {'offered_qos_profiles': profile})
-                for profile in profiles or ['']]
-        for number, (topic, stamp, data) in enumerate(messages):
-            channel = channels[topic][number % len(channels[topic])]
-            writer.add_message(channel, stamp, data, stamp)
-        writer.add_metadata('note', {'a': 'b'})
-        writer.add_attachment(0, 0, 'x.txt', 'text/plain', b'x')
-        writer.finish()
-
-
 @pytest.mark.parametrize('compression', list(CompressionType))
-@pytest.mark.parametrize('options', [
-    {}, {'use_chunking': False}, {'index_types': IndexType.NONE},
-    {'index_types': IndexType.CHUNK}, {'repeat_channels': False, 'repeat_schemas': False},
-    {'use_statistics': False}, {'use_summary_offsets': False}, {'enable_crcs': False},
-    {'use_statistics': False, 'repeat_channels': False, 'repeat_schemas': False,
-     'use_summary_offsets': False, 'index_types': IndexType.NONE},
-], ids=str)
+@pytest.mark.parametrize('options', KINDS_OF_MCAP, ids=str)
 def test_any_kind_of_mcap(tmp_path, options, compression):
     messages = sample_messages(50)
     write_foreign(tmp_path / 'a.mcap', messages, compression=compression, **options)
