@@ -24,8 +24,8 @@ PARAMETERS = -p record.enable:=true \
 	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
 
 .DELETE_ON_ERROR:
-.PHONY: help run test bench bench-quick bench-stability bench-skipping bench-instructions bench-node soak lint \
-	clean stale
+.PHONY: help run test bench bench-quick bench-stability bench-skipping bench-instructions bench-node \
+	bench-bag fuzz-bag soak lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -40,6 +40,8 @@ help:
 	@echo 'make bench-skipping    what a step costs with each term of a scene removed; to benchmarks/'
 	@echo 'make bench-instructions   run time against error as counts of instructions (needs valgrind); to benchmarks/'
 	@echo 'make bench-node   what the node costs beside a naive one (ten minutes; ARGS=--quick: two); to benchmarks/'
+	@echo 'make bench-bag    a million messages written, read, recovered, and kill -9 in a loop; to benchmarks/'
+	@echo 'make fuzz-bag     a thousand bags damaged at random and recovered, of each compression'
 	@echo 'make soak    ten minutes of the node at 1 kHz with two subscribers and 100 commands a second'
 	@echo 'make lint    check the style'
 	@echo 'make clean   remove .venv, caches and build output; recorded runs stay'
@@ -71,6 +73,12 @@ bench-instructions: $(VENV)/ready_for_benchmarks
 
 bench-node: $(VENV)/ready_for_benchmarks
 	@exec tools/in_venv python benchmarks/node.py $(ARGS)
+
+bench-bag: $(VENV)/ready_for_tests
+	@exec tools/in_venv python benchmarks/bag.py $(ARGS)
+
+fuzz-bag: $(VENV)/ready_for_tests
+	@DYNSIM_FUZZ_ROUNDS=1000 exec tools/in_venv python -m pytest test/bag/recovery/test_fuzzed.py --timeout 1200 $(ARGS)
 
 soak: $(VENV)/ready
 	@exec tools/in_venv python benchmarks/soak.py $(ARGS)

@@ -92,6 +92,7 @@ setup(
         'console_scripts': [
             f'export = {NAME}.cli.export:main',
             f'plot = {NAME}.cli.plot:main',
+            f'recover = {NAME}.cli.recover:main',
             f'replay = {NAME}.cli.replay:main',
             f'sim_node = {NAME}.cli.sim_node:main',
             f'simulate = {NAME}.cli.simulate:main',

@@ -10,27 +10,26 @@ from io import BytesIO
 import os
 import struct
 from typing import BinaryIO, NamedTuple
+import zlib
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.reader import SeekingReader
-from mcap.records import Channel, Metadata, Schema
+from mcap.records import Channel, Metadata, Schema, Statistics
 
-from .records import (
-    DamagedChunk,
-    HEAD,
-    MAGIC,
-    MESSAGE,
-    messages_in,
-    open_chunk,
-    parts,
-    Record,
-    walk,
-)
+from .chunk_content import DamagedChunk, open_chunk
+from .chunk_records import records_of
+from .records import HEAD, MAGIC, MESSAGE, Record, walk
 
 # Messages outside chunks are read in portions of about this many bytes.
 _PORTION = 256 * 1024
+
+# A footer with what comes behind it: where summary and offsets begin, a checksum, the magic.
+_END = struct.Struct('<BQQQI8s')
+_FOOTER = 20
+# What an index of a chunk, or of an attachment or metadata, begins with.
+_CHUNK_INDEX = struct.Struct('<QQQQ')
+_OFFSET = struct.Struct('<Q')
 
 
 class Block(NamedTuple):
@@ -65,32 +64,76 @@ def read_index(stream: BinaryIO) -> Index:
     stream.seek(0)
     try:
         index = _from_summary(stream, size)
-    except (McapError, ValueError, struct.error, OSError, StopIteration, KeyError):
+    except (McapError, ValueError, struct.error, OSError):
         index = None
     return index or _Scan(stream, size).index
 
 
 def _from_summary(stream: BinaryIO, size: int) -> Index | None:
     """Return the index that the summary gives, None where it lacks something."""
-    summary = SeekingReader(stream).get_summary()
-    statistics = summary and summary.statistics
-    if not statistics or (
-            len(summary.channels), len(summary.schemas), len(summary.chunk_indexes),
-            len(summary.attachment_indexes), len(summary.metadata_indexes)
-            ) != (statistics.channel_count, statistics.schema_count, statistics.chunk_count,
-                  statistics.attachment_count, statistics.metadata_count
-                  ) or (statistics.message_count and not summary.chunk_indexes):
+    start = _summary_start(stream, size)
+    index, found, told = Index(), Counter(), None
+    for record in walk(stream, start, size - _END.size):
+        content = record.read(stream)
+        found[record.opcode] += 1
+        if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            _declare(index, record.opcode, content)
+        elif record.opcode == Opcode.CHUNK_INDEX:
+            start_ns, end_ns, at, length = _CHUNK_INDEX.unpack_from(content)
+            index.blocks.append(Block(start_ns, end_ns, at, at + length))
+        elif record.opcode == Opcode.ATTACHMENT_INDEX:
+            at, = _OFFSET.unpack_from(content)
+            index.attachments.append(_record_at(stream, at, size, Opcode.ATTACHMENT))
+        elif record.opcode == Opcode.METADATA_INDEX:
+            at, = _OFFSET.unpack_from(content)
+            _add_metadata(index, _record_at(stream, at, size, Opcode.METADATA).read(stream))
+        elif record.opcode == Opcode.STATISTICS:
+            told = Statistics.read(_stream(content))
+    if told is None or (told.message_count and not index.blocks) or (
+            len(index.channels), len(index.schemas), len(index.blocks), len(index.attachments),
+            found[Opcode.METADATA_INDEX]) != (
+                told.channel_count, told.schema_count, told.chunk_count, told.attachment_count,
+                told.metadata_count):
         return None
-    index = Index(summary.schemas, summary.channels, Counter(statistics.channel_message_counts))
-    index.blocks = [
-        Block(chunk.message_start_time, chunk.message_end_time, chunk.chunk_start_offset,
-              chunk.chunk_start_offset + chunk.chunk_length)
-        for chunk in summary.chunk_indexes]
-    index.attachments = [
-        next(walk(stream, entry.offset, size)) for entry in summary.attachment_indexes]
-    for entry in summary.metadata_indexes:
-        _add_metadata(index, next(walk(stream, entry.offset, size)).read(stream))
+    index.counts = Counter(told.channel_message_counts)
     return index
+
+
+def _summary_start(stream, size):
+    """Return where the summary begins; raise ValueError where there is none, or it is damaged."""
+    stream.seek(max(size - _END.size, 0))
+    opcode, length, start, _, told, magic = _END.unpack(stream.read(_END.size))
+    if (opcode, length, magic) != (Opcode.FOOTER, _FOOTER, MAGIC) or not (
+            0 < start <= size - _END.size):
+        raise ValueError('there is no summary')
+    if told:
+        stream.seek(start)
+        # Its checksum covers the footer, too, up to the checksum itself.
+        rest, crc = size - len(MAGIC) - 4 - start, 0
+        while rest:
+            portion = stream.read(min(rest, _PORTION))
+            rest, crc = rest - len(portion), zlib.crc32(portion, crc)
+        if crc != told:
+            raise ValueError('the summary is damaged')
+    return start
+
+
+def _record_at(stream, at, size, opcode):
+    """Return the record of a kind that begins somewhere; raise ValueError where none does."""
+    record = next(walk(stream, at, size), None)
+    if record is None or record.opcode != opcode:
+        raise ValueError('the summary is wrong')
+    return record
+
+
+def _declare(index: Index, opcode: int, content: bytes):
+    """Take in a schema or a channel."""
+    if opcode == Opcode.SCHEMA:
+        schema = Schema.read(_stream(content))
+        index.schemas[schema.id] = schema
+    else:
+        channel = Channel.read(_stream(content))
+        index.channels[channel.id] = channel
 
 
 def _add_metadata(index: Index, content: bytes):
@@ -135,7 +178,7 @@ class _Scan:
         elif record.opcode == Opcode.CHUNK:
             self._add_chunk(record)
         elif record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-            self._declare(record.opcode, record.read(self._stream))
+            _declare(self.index, record.opcode, record.read(self._stream))
         elif record.opcode == Opcode.METADATA:
             _add_metadata(self.index, record.read(self._stream))
         elif record.opcode == Opcode.ATTACHMENT:
@@ -143,27 +186,20 @@ class _Scan:
         elif record.opcode == Opcode.FOOTER:
             self._finished = True
 
-    def _declare(self, opcode: int, content: bytes):
-        """Take in a schema or a channel."""
-        if opcode == Opcode.SCHEMA:
-            schema = Schema.read(_stream(content))
-            self.index.schemas[schema.id] = schema
-        else:
-            channel = Channel.read(_stream(content))
-            self.index.channels[channel.id] = channel
-
     def _add_chunk(self, record: Record):
         """Take in what a chunk declares and the times of its messages."""
         data = open_chunk(record.read(self._stream))
-        messages = list(messages_in(data))
-        for opcode, start, end in parts(data):
+        found = records_of(data)
+        if found.end != len(data):
+            raise DamagedChunk('its records do not fit')
+        for at in found.others:
+            opcode, length = HEAD.unpack_from(data, at)
             if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-                self._declare(opcode, data[start:end])
-        if messages:
+                _declare(self.index, opcode, data[at + HEAD.size:at + HEAD.size + length])
+        if len(found.messages):
             self._end_portion()
-            self.index.counts.update(message.channel_id for message in messages)
-            times = [message.log_ns for message in messages]
-            self.index.blocks.append(Block(min(times), max(times), record.start, record.end))
+            self.index.counts.update(found.counts())
+            self.index.blocks.append(Block(*found.times, record.start, record.end))
 
     def _add_message(self, record: Record, channel_id: int, log_ns: int):
         """Take in a message outside any chunk."""

@@ -9,12 +9,12 @@ import struct
 import numpy as np
 
 from .pack_rows import prepare_packing, RowPlan
+from .summary import message_index
 
 # A message's record up to its data, and an entry of a message index.
 _HEAD = struct.Struct('<BQHIQQ')
 _ENTRY = struct.Struct('<QQ')
-_MESSAGE, _MESSAGE_INDEX = 5, 7
-_INDEX_HEAD = struct.Struct('<BQHI')
+_MESSAGE = 5
 
 
 class Chunk:
@@ -33,6 +33,7 @@ class Chunk:
         self._index: dict[int, bytearray] = {}
         self._counts = np.zeros(0, np.int64)
         self._row_index = np.zeros((0, 0, 2), np.int64)
+        self._channels: list[int] = []
         self.size = self.count = self.start_ns = self.end_ns = 0
 
     def declare_rows(self, plan: RowPlan):
@@ -41,9 +42,11 @@ class Chunk:
         block = int(plan.end[-1]) if len(plan.end) else 1
         # As many ticks as there is room for, even if each has its largest row only.
         longest = int((plan.end - plan.start).min()) if len(plan.end) else 1
-        self._make_room(block)
+        # A chunk is full when it has reached its capacity, not before.
+        self._make_room(self.capacity + block)
         self._row_index = np.zeros((len(plan.end), len(self._data) // longest + 1, 2), np.int64)
         self._counts = np.zeros(len(plan.end), np.int64)
+        self._channels = plan.channel.tolist()
         self._pack = prepare_packing()
 
     def add(self, channel_id: int, stamp_ns: int, data: bytes):
@@ -64,10 +67,10 @@ class Chunk:
         ticks = max((self.capacity - self.size) // max(blocks.shape[1], 1), 1)
         blocks, stamps = blocks[:ticks], stamps[:ticks]
         self._make_room(self.size + blocks.size)
-        before = int(self._counts.sum())
+        before = sum(self._counts.tolist())
         end = self._pack(self.plan, blocks, stamps, self._data, self.size, self._row_index,
                          self._counts)
-        messages = int(self._counts.sum()) - before
+        messages = sum(self._counts.tolist()) - before
         if messages:
             self._took(end, int(stamps[0]), int(stamps[-1]), messages)
         return len(blocks), messages
@@ -79,12 +82,11 @@ class Chunk:
     def indexes(self) -> dict[int, bytes]:
         """Return {channel: its message index, a whole record}, for channels with messages."""
         entries = {channel: bytes(index) for channel, index in self._index.items()}
-        for r in np.flatnonzero(self._counts):
-            channel = int(self.plan.channel[r])
-            rows = self._row_index[r, :self._counts[r]].tobytes()
-            entries[channel] = rows + entries.get(channel, b'')
-        return {channel: _INDEX_HEAD.pack(_MESSAGE_INDEX, 6 + len(index), channel, len(index))
-                + index for channel, index in entries.items()}
+        for channel, count, index in zip(self._channels, self._counts.tolist(), self._row_index,
+                                         strict=True):
+            if count:
+                entries[channel] = index[:count].tobytes() + entries.get(channel, b'')
+        return {channel: message_index(channel, index) for channel, index in entries.items()}
 
     def clear(self):
         """Begin anew."""

@@ -1,101 +1,118 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""A thread that writes a bag, so that a simulation's tick never waits for the disk."""
+"""Recording without waiting: a simulation's tick hands over, another thread writes the bag."""
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Mapping, Sequence
-import threading
+from collections.abc import Callable, Mapping, Sequence
 import time
 
 import numpy as np
 
+from .backlog import Backlog
+from .bag_thread import BagThread
+from .gap import Gap
 from .pack_rows import RowPlan
-from .tick_queue import TickQueue
 from .writer import BagWriter
 from ..messages.qos import Qos, STATE
 from ..messages.tick_rows import TickRows, Wanted
-from ..simulation.rows.kernel import PRESENT
 
-# How often the thread looks for work [s]. What it finds goes to the file at once if it is worth
-# a chunk of its own [bytes], and in any case before it has waited for too long [s].
-_PERIOD = 0.025
-_WORTH = 16 * 1024
-_FLUSH_PERIOD = 0.5
+_TOO_SLOW = 'the disk is too slow'
 
 
 class Recorder:
     """
     Writes what `put` hands over, in a thread of its own.
 
-    Nothing raises into the caller: when the bag cannot be written, `error` says why and what
-    follows counts as lost. messages: number in the bag, the chunk in progress included; lost:
-    number handed over that are not and will not be in the bag; error: one line, or None; wait:
-    as given at the start, may be changed.
+    Nothing raises into the caller. Where the bag cannot be written, what is handed over waits, as
+    much as `capacity` allows; what finds no room is lost and counted, and the bag tells of it, see
+    Gap. capacity: as given at the start; wait: likewise, may be changed; news: deque of (whether
+    it is an error, one line), to be taken out and shown.
     """
 
-    def __init__(self, writer: BagWriter, *, capacity: int = 200_000, wait: bool = False):
+    def __init__(self, writer: BagWriter, *, capacity: int = 200_000, wait: bool = False,
+                 sync_period: float = 0.0):
         """
         Start the thread, which owns the writer from here on.
 
         capacity: number of messages that may be waiting. Beyond it messages are lost, or with
-        `wait` (for runs that are not bound to real time) `put` waits for the disk.
+        `wait` (for runs that are not bound to real time) `put` waits for the disk, unless that
+        fails. sync_period: how often the bag is brought to the disk [s]; 0: when the operating
+        system chooses to.
         """
-        self.error: str | None = None
-        self._writer = writer
-        self._capacity = capacity
+        self.capacity = capacity
         self.wait = wait
-        # What is no row, each with the number of ticks that were put before it.
-        self._queue: deque = deque()
-        self._ticks: TickQueue | None = None
-        self._plan: RowPlan | None = None
-        # Each is counted up by one thread alone; what is between them waits.
-        self._handed_over = 0
-        self._taken = 0
-        self._lost = 0
+        self._backlog = Backlog()
+        self._thread = BagThread(writer, self._backlog, sync_period)
+        self.news = self._thread.news
+        # Counted by the putting thread.
         self._overflow = 0
-        self._writer_lock = threading.RLock()
-        self._wake = threading.Event()
-        self._closing = False
-        self._thread = threading.Thread(target=self._run, name='bag recorder', daemon=True)
-        self._thread.start()
+        self._gap: Gap | None = None
 
     @property
     def messages(self) -> int:
-        """Return the number of messages in the bag."""
-        return self._writer.message_count
+        """Return the number of messages in the bag, what is on its way to the file included."""
+        return self._thread.messages
+
+    @property
+    def waiting(self) -> int:
+        """Return the number of messages handed over that are not in the bag yet."""
+        return self._backlog.waiting
 
     @property
     def lost(self) -> int:
-        """Return the number of messages handed over that are not in the bag."""
-        return self._lost + self._overflow
+        """Return the number of messages handed over that are not and will not be in the bag."""
+        return self._overflow + self._thread.lost
+
+    @property
+    def error(self) -> str | None:
+        """Return what went wrong last, in one line, or None."""
+        return self._thread.error or (_TOO_SLOW if self._overflow else None)
+
+    @property
+    def is_failing(self) -> bool:
+        """Tell whether the bag cannot be written now, or messages are being lost."""
+        return self._thread.is_failing or self._gap is not None
+
+    @property
+    def paths(self):
+        """Return the paths of the bag's files so far, see `go_on_in`."""
+        return self._thread.paths
+
+    @property
+    def unfinished(self):
+        """Return the paths of those that could not be finished, and have to be recovered."""
+        return self._thread.unfinished
 
     @property
     def path(self):
-        """Return the path of the bag."""
-        return self._writer.path
+        """Return the path of the last of them."""
+        return self._thread.paths[-1]
+
+    @property
+    def size(self) -> int:
+        """Return how many bytes that file will have, about, if it is finished now."""
+        return self._thread.writer.size
 
     def put(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]], keep: bool = False):
         """
         Hand over the messages of one instant, as (channel id, CDR bytes), at a time in ns.
 
-        keep: for what must not be lost even where there is no room. Returns at once; to be
-        called from one thread only. After `close` messages are lost.
+        keep: for what must not be lost even where there is no room, up to twice as much. Returns
+        at once; to be called from one thread only. After `close` messages are lost.
         """
-        if self._has_no_room(len(messages), keep):
-            return
-        self._handed_over += len(messages)
-        self._queue.append((self._ticks.put_count if self._ticks else 0, stamp_ns, messages))
+        count = len(messages)
+        if self._has_room() or (keep and self._has_room_to_keep()):
+            self._backlog.add(count, self._thread.write, stamp_ns, messages)
+        else:
+            self._lose(stamp_ns, count)
 
     def declare_rows(self, rows: TickRows, channel_ids: Sequence[int]):
         """Let ticks of some TickRows be put; channel_ids: of their rows; once, before put_rows."""
         starts, ends = (np.array(part, np.int64) for part in (
             rows.table.start, [end for _, end in rows.spans]))
-        plan = RowPlan(starts, ends, np.array(channel_ids, np.int64))
-        with self._writer_lock:
-            self._writer.declare_rows(plan)
-        self._plan, self._ticks = plan, TickQueue(rows.size)
+        self._thread.declare_rows(RowPlan(starts, ends, np.array(channel_ids, np.int64)))
+        self._backlog.declare_rows(rows.size)
 
     def put_rows(self, rows: TickRows, stamp_ns: int, wanted: Wanted):
         """
@@ -104,41 +121,48 @@ class Recorder:
         As `put`: they follow what was put before, and come before what is put later.
         """
         count = len(wanted.numbers)
-        if ((self._handed_over - self._taken >= self._capacity or self._closing)
-                and self._has_no_room(count, False)):
-            return
-        self._handed_over += count
-        self._ticks.put(rows.view, stamp_ns)
+        if self._has_room():
+            self._backlog.add_rows(rows.view, stamp_ns, count)
+        else:
+            self._lose(stamp_ns, count)
 
     def put_many_rows(self, rows: TickRows, stamps: np.ndarray, wanted: Wanted):
         """Hand over likewise all instants filled in last; stamps: (instants,) int64 [ns]."""
-        count = len(wanted.numbers) * len(stamps)
-        if self._has_no_room(count, False):
+        count = len(wanted.numbers)
+        if self._has_room():
+            self._backlog.add_many_rows(rows.blocks, stamps, count * len(stamps))
             return
-        self._handed_over += count
-        self._ticks.put_many(rows.blocks, stamps)
+        for stamp_ns in stamps.tolist():
+            self._lose(stamp_ns, count)
+
+    def go_on_in(self, make: Callable[[], BagWriter]):
+        """
+        Let what is put from here on go to another file, and finish this one.
+
+        make: returns the writer of that, with the same channels; called in the writing thread,
+        again and again if it raises OSError.
+        """
+        self._backlog.add(0, self._thread.change_over, make)
 
     def add_channel(self, topic: str, type_name: str, qos: Qos = STATE) -> int:
-        """Declare a topic, as `BagWriter.add_channel` does."""
-        with self._writer_lock:
-            return self._writer.add_channel(topic, type_name, qos)
+        """Declare a topic, as `BagWriter.add_channel` does; waits for the disk."""
+        with self._thread.lock:
+            return self._thread.writer.add_channel(topic, type_name, qos)
 
     def add_metadata(self, name: str, values: Mapping[str, str]):
-        """Append a metadata record; a failed write is kept in `error`."""
-        self._attempt(self._writer.add_metadata, name, values)
+        """Hand over a metadata record, see `BagWriter.add_metadata`."""
+        self._backlog.add(0, lambda: self._thread.writer.add_metadata(name, values))
 
     def add_attachment(self, name: str, data: bytes, media_type: str):
-        """Append an attachment; a failed write is kept in `error`."""
-        self._attempt(self._writer.add_attachment, name, data, media_type)
+        """Hand over an attachment, see `BagWriter.add_attachment`."""
+        self._backlog.add(0, lambda: self._thread.writer.add_attachment(name, data, media_type))
 
     def close(self):
         """Write what is waiting, finish the file and end the thread; harmless when repeated."""
-        self._closing = True
-        self._wake.set()
-        self._thread.join()
+        self._end_gap()
+        self._thread.end()
         # What came while the file was being finished.
-        self._overflow += self._handed_over - self._taken
-        self._handed_over = self._taken
+        self._overflow += self._backlog.drop()
 
     def __enter__(self) -> Recorder:
         """Return the recorder."""
@@ -148,89 +172,43 @@ class Recorder:
         """Close the bag."""
         self.close()
 
-    def _has_no_room(self, count: int, keep: bool) -> bool:
-        """Tell whether so many messages cannot be taken; they are counted as lost then."""
-        if self._handed_over - self._taken < self._capacity and not self._closing:
+    def _has_room(self) -> bool:
+        """Tell whether messages can be taken."""
+        if (self._gap is None and self._backlog.waiting < self.capacity
+                and not self._thread.is_closing):
+            return True
+        return self._makes_room()
+
+    def _makes_room(self) -> bool:
+        """Wait for the disk where that is wanted; tell whether there is room now."""
+        backlog, thread = self._backlog, self._thread
+        while (self.wait and backlog.waiting >= self.capacity and self._gap is None
+               and not (thread.is_failing or thread.is_closing)):
+            thread.wake.set()
+            time.sleep(0.001)
+        # Where something was lost, more is until half is written: a few long gaps, not many.
+        room = self.capacity if self._gap is None else max(self.capacity // 2, 1)
+        if thread.is_closing or backlog.waiting >= room:
             return False
-        if self._make_room() or (keep and not self._closing):
-            return False
-        self._overflow += count
+        self._end_gap()
         return True
 
-    def _make_room(self) -> bool:
-        """Wait for the thread if that is wanted; tell whether there is room now."""
-        while self.wait and not self._closing and self._is_full():
-            self._wake.set()
-            time.sleep(0.001)
-        return not (self._is_full() or self._closing)
+    def _has_room_to_keep(self) -> bool:
+        return self._backlog.waiting < 2 * self.capacity and not self._thread.is_closing
 
-    def _is_full(self) -> bool:
-        """Tell whether as much waits as may."""
-        return self._handed_over - self._taken >= self._capacity
+    def _lose(self, stamp_ns: int, count: int):
+        """Count messages that found no room."""
+        if self._gap is None and not self._thread.is_closing:
+            reason = self._thread.error if self._thread.is_failing else _TOO_SLOW
+            self._gap = Gap(reason, stamp_ns)
+            self.news.append((True, f'messages are lost from {stamp_ns * 1e-9:.3f} s on, until '
+                              f'half of the {self.capacity} that wait are written: {reason}'))
+        if self._gap is not None:
+            self._gap.add(stamp_ns, count)
+        self._overflow += count
 
-    def _run(self):
-        """Write what waits, again and again, until the recorder is closed."""
-        flushed = time.monotonic()
-        while not self._closing:
-            self._wake.wait(_PERIOD)
-            self._wake.clear()
-            self._drain()
-            if (self._writer.pending_bytes >= _WORTH
-                    or time.monotonic() - flushed > _FLUSH_PERIOD):
-                self._flush()
-                flushed = time.monotonic()
-        self._drain()
-        self._attempt(self._writer.close)
-
-    def _drain(self):
-        """Write everything that waits, ticks and other messages in the order they came in."""
-        while True:
-            # Asked in this order: what is no row and was put before a tick is seen with it.
-            ticks = self._ticks.put_count if self._ticks else 0
-            after, stamp_ns, messages = self._queue[0] if self._queue else (ticks, 0, None)
-            self._drain_ticks(min(ticks, after))
-            if messages is None:
-                return
-            if after <= ticks:
-                self._queue.popleft()
-                self._attempt(self._write, stamp_ns, messages, count=len(messages))
-                self._taken += len(messages)
-
-    def _drain_ticks(self, end: int):
-        """Write the ticks that were put as the first `end` ones."""
-        ticks = self._ticks
-        while ticks and ticks.taken_count < end:
-            blocks, stamps = ticks.take(end)
-            count = int((blocks[:, self._plan.start] == PRESENT).sum())
-            self._attempt(self._writer.write_rows, blocks, stamps, count=count)
-            ticks.release(len(blocks))
-            self._taken += count
-
-    def _write(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]]):
-        """Append the messages of one instant."""
-        for channel_id, data in messages:
-            self._writer.write(channel_id, stamp_ns, data)
-
-    def _flush(self):
-        """Bring the chunk in progress into the file."""
-        if self._writer.pending:
-            self._attempt(self._writer.flush)
-
-    def _attempt(self, call, *arguments, count: int = 0):
-        """Call the writer; keep the first error and count the messages that it costs."""
-        with self._writer_lock:
-            before = self._writer.message_count
-            try:
-                call(*arguments)
-            except Exception as error:
-                # Whatever it is, the simulation goes on and the error is shown where it counts.
-                self._lost += before + count - self._writer.message_count
-                if self.error is None:
-                    self.error = self._describe(error)
-
-    def _describe(self, error: Exception) -> str:
-        """Return one line that says what happened to the bag."""
-        if isinstance(error, OSError):
-            return (f'{self.path} cannot be written: {error.strerror or error}; it holds the '
-                    f'first {self.messages} messages, later ones are lost')
-        return str(error) or type(error).__name__
+    def _end_gap(self):
+        """Have the bag tell of what was lost by now."""
+        if self._gap is not None:
+            self._backlog.add(0, self._thread.write_gap, self._gap)
+            self._gap = None

@@ -5,14 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from io import BytesIO
 import struct
 from typing import BinaryIO, NamedTuple
 
-from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.records import Chunk
-from mcap.stream_reader import get_chunk_data_stream
+
+from .chunk_content import DamagedChunk, open_chunk
 
 MAGIC = b'\x89MCAP0\r\n'
 
@@ -21,10 +19,6 @@ HEAD = struct.Struct('<BQ')
 
 # Channel, sequence number, log time and publish time, before a message's data.
 MESSAGE = struct.Struct('<HIQQ')
-
-
-class DamagedChunk(ValueError):
-    """A chunk that cannot be decompressed, or whose checksum or records do not fit."""
 
 
 class Record(NamedTuple):
@@ -74,18 +68,7 @@ def parts(data: bytes) -> Iterator[tuple[int, int, int]]:
         yield opcode, start, at
 
 
-def open_chunk(content: bytes) -> bytes:
-    """Return the records that a chunk record holds, decompressed; raises DamagedChunk."""
-    try:
-        stream, length = get_chunk_data_stream(
-            Chunk.read(ReadDataStream(BytesIO(content))), validate_crc=True)
-        return stream.read(length)
-    except Exception as error:
-        # Every decompressor raises errors of its own.
-        raise DamagedChunk(str(error)) from None
-
-
-def messages_in(data: bytes) -> Iterator[Message]:
+def messages_in(data: bytes, *, in_chunk: bool = False) -> Iterator[Message]:
     """Yield the messages among records, those within chunks too, in the order they lie there."""
     for opcode, start, end in parts(data):
         if opcode == Opcode.MESSAGE:
@@ -93,5 +76,5 @@ def messages_in(data: bytes) -> Iterator[Message]:
                 raise DamagedChunk('it holds a message that is too short')
             channel_id, _, log_ns, _ = MESSAGE.unpack_from(data, start)
             yield Message(log_ns, channel_id, data[start + MESSAGE.size:end])
-        elif opcode == Opcode.CHUNK:
-            yield from messages_in(open_chunk(data[start:end]))
+        elif opcode == Opcode.CHUNK and not in_chunk:
+            yield from messages_in(open_chunk(data[start:end]), in_chunk=True)

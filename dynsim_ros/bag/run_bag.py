@@ -8,10 +8,9 @@ from dataclasses import asdict
 from datetime import datetime, timezone
 import json
 from pathlib import Path
-import re
 
+from .bag_files import BagFiles, NO_LIMITS
 from .recorder import Recorder
-from .writer import BagWriter
 from .. import __version__
 from ..messages.commands import command_messages, command_topics
 from ..messages.epoch import EPOCH
@@ -29,33 +28,52 @@ class RunBag:
 
     channels: what is recorded besides the epoch and commands; node: full name of the node;
     resolve(topic): returns the full name of a topic, None to put relative ones below the node;
-    parameters: {name: value} beside those of scene and settings; rows: TickRows of the channels
-    that have a row. Raises OSError or ValueError if the file cannot be made;
-    it is never overwritten.
+    parameters: {name: value} beside those of scene and settings, always up to date; rows:
+    TickRows of the channels that have a row; limits: beyond them another file begins, a whole bag
+    itself; sync_period: see Recorder. Raises OSError or ValueError if the file cannot be made; it
+    is never overwritten.
     """
 
     def __init__(self, path, simulator, channels, rows, *, node='/dynsim', resolve=None,
-                 compression='zstd', parameters=None, wait=False):
+                 compression='zstd', parameters=None, wait=False, limits=NO_LIMITS,
+                 sync_period=0.0):
         """Create the file and write down how the run stands."""
-        self.path = Path(path).expanduser()
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        writer = BagWriter(self.path, compression=compression,
-                           library=f'dynsim_ros {__version__}')
+        path = Path(path).expanduser()
+        self._simulator, self._node = simulator, node
+        resolve = resolve or (lambda topic: topic if topic[0] == '/' else f'{node}/{topic}')
+        self._topics = [(topic, resolve(topic), *what)
+                        for topic, *what in _topics(simulator.scene, channels)]
+        self._parameters = {} if parameters is None else parameters
+        self._files = BagFiles(path.parent, compression, f'dynsim_ros {__version__}', limits,
+                               self._describe)
         try:
-            _describe(writer, simulator, node, parameters or {})
-            resolve = resolve or (lambda topic: topic if topic[0] == '/' else f'{node}/{topic}')
-            self._ids = {topic: writer.add_channel(resolve(topic), type_name, qos)
-                         for topic, type_name, qos in _topics(simulator.scene, channels)}
+            writer = self._files.begin(path, simulator, self._parameters)
         except BaseException:
-            writer.close()
+            self._files.close()
             raise
         # Latched: who reads the bag is told it first, as who subscribes is.
-        self._latched = {EPOCH.topic: EPOCH.encode(simulator.snapshot(), None)}
-        self.recorder = Recorder(writer, wait=wait)
+        self._latched = _latched(simulator)
+        self.recorder = Recorder(writer, wait=wait, sync_period=sync_period)
         self.recorder.declare_rows(rows, [self._ids[channel.topic] for channel in rows.channels])
+
+    @property
+    def path(self):
+        """Return the path of the bag, of its last file so far if it has several."""
+        return self.recorder.path
+
+    @property
+    def content(self):
+        """Return in one clause how many messages are in which files."""
+        first, *others = self.recorder.paths
+        return f'{self.recorder.messages} messages in {first}' + (
+            f' to {others[-1].name}' if others else '')
 
     def put_rows(self, rows, stamp_ns, wanted):
         """Record the wanted rows of the instant that TickRows were filled in with last."""
+        if self._files.is_next_due(stamp_ns, self.recorder):
+            self._files.go_on(stamp_ns, self.recorder, self._simulator.copy(),
+                              dict(self._parameters))
+            self._latched = _latched(self._simulator)
         if self._latched:
             self._put(stamp_ns, [])
         self.recorder.put_rows(rows, stamp_ns, wanted)
@@ -79,6 +97,17 @@ class RunBag:
     def close(self):
         """Finish the file; harmless when repeated."""
         self.recorder.close()
+        self._files.close()
+
+    def _describe(self, writer, simulator, parameters):
+        """Write down how the run stands, and what can be in the file."""
+        _describe(writer, simulator, self._node, parameters)
+        self._ids = {topic: writer.add_channel(*what) for topic, *what in self._topics}
+
+
+def _latched(simulator):
+    """Return {topic: CDR bytes} of what stands first in a file."""
+    return {EPOCH.topic: EPOCH.encode(simulator.snapshot(), None)}
 
 
 def _as_sent(data):
@@ -107,13 +136,3 @@ def _run_metadata(simulator, node):
             'epoch': str(simulator.epoch), 'start_tick': str(simulator.tick),
             'start_time_ns': str(simulator.time_ns),
             'recorded_at': datetime.now(timezone.utc).isoformat(timespec='seconds')}
-
-
-def new_path(directory, scene_name):
-    """Return a path for a new bag: the scene's name and the time of day, and not yet there."""
-    # A scene may have any name; what is no part of a file name is left out.
-    name = re.sub(r'[^\w-]+', '_', scene_name)[:80]
-    stem = f'{name}_{datetime.now():%Y%m%d_%H%M%S}'
-    candidates = (Path(directory, f'{stem}{suffix}.mcap').expanduser() for suffix in
-                  ('', *(f'_{i}' for i in range(2, 1000))))
-    return next(path for path in candidates if not path.exists())

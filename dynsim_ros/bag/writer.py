@@ -4,10 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 import os
 from pathlib import Path
 
+from mcap.records import Attachment, Header, Metadata
 import numpy as np
 
 from .mcap_chunk import Chunk
@@ -29,17 +30,19 @@ class BagWriter:
 
     Channels may be added at any time. Times are integer nanoseconds and must not go back.
     message_count: messages that are in the file or in the chunk in progress. Used as a context
-    manager it closes the file. After an OSError no more can be written; everything up to the
-    last whole chunk stays in the file.
+    manager it closes the file. A call that raises OSError, as where the disk is full, has left no
+    trace and may be made again; the chunk in progress is kept until it can be written.
     """
 
     def __init__(self, path: str | os.PathLike, *, compression: str = 'zstd',
-                 chunk_size: int = CHUNK_SIZE, library: str = 'dynsim_ros'):
+                 chunk_size: int = CHUNK_SIZE, library: str = 'dynsim_ros',
+                 folder: int | None = None):
         """
         Create the file; raises FileExistsError if it exists.
 
         compression: 'zstd', 'lz4' or 'none'; chunk_size: bytes before compression after which
-        a chunk is written; library: name and version of the writing program.
+        a chunk is written; library: name and version of the writing program; folder: descriptor
+        of the folder that the file lies in, None where the path is enough.
         """
         if compression not in COMPRESSIONS:
             raise ValueError(f"compression '{compression}' is unknown: use one of "
@@ -50,19 +53,19 @@ class BagWriter:
         self.message_count = 0
         self._last_stamp = 0
         self._schemas: dict[str, int] = {}
-        self._failed = False
         self._chunk = Chunk(chunk_size)
-        self._file: McapFile | None = McapFile(self.path, COMPRESSIONS[compression], library)
+        self._file: McapFile | None = McapFile(
+            self.path, COMPRESSIONS[compression], Header('ros2', library), folder)
+
+    @property
+    def size(self) -> int:
+        """Return how many bytes the file will have, about, if it is finished now."""
+        return self._file.size + self._chunk.size if self._file else 0
 
     @property
     def pending(self) -> int:
         """Return the number of messages in the chunk in progress, not yet in the file."""
         return self._chunk.count
-
-    @property
-    def pending_bytes(self) -> int:
-        """Return how many bytes these are, before compression."""
-        return self._chunk.size
 
     def add_channel(self, topic: str, type_name: str, qos: Qos = STATE) -> int:
         """Declare a topic of an installed message type; return the id to write to it with."""
@@ -77,61 +80,86 @@ class BagWriter:
 
     def write(self, channel_id: int, stamp_ns: int, data: bytes):
         """Append a message at a time in ns; raises ValueError for a time before the last one."""
-        self._check_usable()
-        self._advance(stamp_ns, stamp_ns)
-        self._chunk.add(channel_id, stamp_ns, data)
-        self.message_count += 1
-        if self._chunk.size >= self._chunk.capacity:
-            self.flush()
+        self.write_all(stamp_ns, [(channel_id, data)])
+
+    def write_all(self, stamp_ns: int, messages: Iterable[tuple[int, bytes]]):
+        """Append the messages of one instant, as (channel id, CDR bytes), likewise."""
+        self._check_time(stamp_ns)
+        self._make_room()
+        self._last_stamp = stamp_ns
+        for channel_id, data in messages:
+            self._chunk.add(channel_id, stamp_ns, data)
+            self.message_count += 1
 
     def declare_rows(self, plan: RowPlan):
         """Let ticks with such rows be written; once."""
         self._chunk.declare_rows(plan)
 
-    def write_rows(self, blocks: np.ndarray, stamps: np.ndarray):
-        """Append the rows of ticks: blocks (ticks, bytes) uint8, stamps (ticks,) [ns]."""
-        self._check_usable()
-        if (np.diff(stamps) < 0).any():
+    def write_rows(self, blocks: np.ndarray, stamps: np.ndarray) -> int:
+        """
+        Append the rows of the first of some ticks; return of how many, one at least.
+
+        blocks: (ticks, bytes) uint8; stamps: (ticks,) [ns].
+        """
+        if (stamps[1:] < stamps[:-1]).any():
             raise ValueError(f'{self.path}: times in a bag never go back')
-        self._advance(int(stamps[0]), int(stamps[-1]))
-        while len(blocks):
-            ticks, messages = self._chunk.add_rows(blocks, stamps)
-            self.message_count += messages
-            blocks, stamps = blocks[ticks:], stamps[ticks:]
-            if len(blocks) or self._chunk.size >= self._chunk.capacity:
-                self.flush()
+        self._check_time(int(stamps[0]))
+        self._make_room()
+        ticks, messages = self._chunk.add_rows(blocks, stamps)
+        self.message_count += messages
+        self._last_stamp = int(stamps[ticks - 1])
+        return ticks
 
     def add_metadata(self, name: str, values: Mapping[str, str]):
         """Append a record of names and texts, such as the settings of the run."""
         if name == 'rosbag2':
             raise ValueError("a metadata record must not be named 'rosbag2': ros2 bag would "
                              'take it for its own')
-        self._check_usable()
-        self._guarded(self._file.add_metadata, name, dict(values))
+        self._check_open()
+        self._file.add(Metadata(name, dict(values)))
 
     def add_attachment(self, name: str, data: bytes, media_type: str):
         """Append a whole file, such as the scene, under a name."""
-        self._check_usable()
-        self._guarded(self._file.add_attachment, name, data, media_type, self._last_stamp)
+        self._check_open()
+        self._file.add(Attachment(create_time=0, log_time=self._last_stamp, name=name,
+                                  media_type=media_type, data=data))
 
     def flush(self):
         """End the chunk in progress and hand it to the operating system."""
-        self._check_usable()
+        self._check_open()
         if self._chunk.count:
-            self._guarded(self._file.add_chunk, self._chunk)
+            self._file.add_chunk(self._chunk)
             self._chunk.clear()
 
-    def close(self):
-        """Finish the file with its index and close it; harmless when called again."""
+    def sync(self):
+        """Wait until all that was flushed is on the disk."""
+        self._check_open()
+        self._file.sync()
+
+    def close(self, sync: bool = False):
+        """
+        Finish the file with its index and close it; harmless when called again.
+
+        sync: whether to wait until all of it is on the disk. Whatever is raised, the file is
+        closed; it ends with the last whole chunk then, and what is not in it is not counted.
+        """
         if self._file is None:
             return
         try:
-            if not self._failed:
-                self.flush()
-                self._guarded(self._file.finish)
+            self.flush()
+            self._file.finish()
+            if sync:
+                self._file.sync()
         finally:
+            self.message_count -= self._chunk.count
+            self._chunk.clear()
             self._file.close()
             self._file = None
+
+    def discard(self):
+        """Close the file, and delete it."""
+        self._file.discard()
+        self._file = None
 
     def __enter__(self) -> BagWriter:
         """Return the writer."""
@@ -141,25 +169,19 @@ class BagWriter:
         """Close the file."""
         self.close()
 
-    def _advance(self, first_ns, last_ns):
-        """Go on from the last time to another one; raise ValueError for a time before it."""
+    def _check_time(self, first_ns):
+        """Raise ValueError where the file is closed, or a time is before the last one."""
+        self._check_open()
         if first_ns < self._last_stamp:
             raise ValueError(f'{self.path}: a message at {first_ns} ns cannot follow one at '
                              f'{self._last_stamp} ns: times in a bag never go back')
-        self._last_stamp = last_ns
 
-    def _guarded(self, call, *arguments, **named):
-        """Call into the file; after a failed write nothing more is to be added to it."""
-        try:
-            call(*arguments, **named)
-        except OSError:
-            self._failed = True
-            self.message_count -= self._chunk.count
-            self._chunk.clear()
-            raise
+    def _make_room(self):
+        """Write the chunk in progress if it is full."""
+        if self._chunk.size >= self._chunk.capacity:
+            self.flush()
 
-    def _check_usable(self):
-        """Raise ValueError when the file is closed or a write has failed."""
-        if self._file is None or self._failed:
-            reason = 'is closed' if self._file is None else 'could not be written'
-            raise ValueError(f'{self.path} {reason}: no more can be added to it')
+    def _check_open(self):
+        """Raise ValueError when the file is closed."""
+        if self._file is None:
+            raise ValueError(f'{self.path} is closed: no more can be added to it')

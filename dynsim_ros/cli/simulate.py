@@ -60,7 +60,8 @@ def main(args=None) -> int:
 def _simulate(args, signals) -> int:
     options = _parser(args).parse_args(args)
     # Imported here so that --help is quick.
-    from ..bag.run_bag import new_path, RunBag
+    from ..bag.bag_names import new_path
+    from ..bag.run_bag import RunBag
     from ..messages.scene_channels import scene_channels
     from ..messages.tick_rows import TickRows
     from ..scene import load_scene
@@ -82,16 +83,22 @@ def _simulate(args, signals) -> int:
     run = OfflineRun(simulator, commands, _Sink(bag, channels, rows, progress))
     started = time.monotonic()
     try:
-        status, error = _run(run, options.duration, signals)
+        # Without a bag there is no use in going on.
+        status, error = _run(run, options.duration,
+                             lambda: signals.requested or bag.recorder.is_failing)
     finally:
         bag.close()
         progress.clear()
     elapsed = time.monotonic() - started
+    if bag.recorder.error:
+        status, error = 2, _of_bag(bag, simulator)
+    elif signals.requested:
+        status = 130
     if simulator.shortfall:
         progress.say(simulator.shortfall)
     progress.say(f'{simulator.time:g} s simulated in {elapsed:.2f} s '
                  f'({simulator.time / elapsed:.3g} times real time); '
-                 f'{bag.recorder.messages} messages in {bag.path}')
+                 f'{bag.content}')
     if run.commands and status == 0:
         progress.say(f'{len(run.commands)} commands lie at the end or behind it and were not '
                      f'carried out, the first at {run.commands[0][0] * 1e-9:g} s')
@@ -99,20 +106,27 @@ def _simulate(args, signals) -> int:
         # The run itself again, from its start, and a finer one.
         progress.say(f'error at the end, estimated: '
                      f'{estimate_error(simulator, commands, options.duration)}')
-    if error or bag.recorder.error:
-        print(f'error: {error or bag.recorder.error}', file=sys.stderr)
-    return 2 if bag.recorder.error else status
+    if error:
+        print(f'error: {error}', file=sys.stderr)
+    return status
 
 
-def _run(run, duration, signals):
+def _run(run, duration, is_stopped):
     """Run to the end; return the exit status and, where it went wrong, an error."""
     from ..simulation import DivergenceError
 
     try:
-        run.run(duration, signals.is_requested)
+        run.run(duration, is_stopped)
     except DivergenceError as error:
         return 1, str(error)
-    return (130 if signals.requested else 0), None
+    return 0, None
+
+
+def _of_bag(bag, simulator):
+    """Return in one line what went wrong with a bag."""
+    recorder = bag.recorder
+    remedy = f'; make room and run: recover {bag.path}' if recorder.unfinished else ''
+    return f'{recorder.error}; the run was ended at {simulator.time:g} s{remedy}'
 
 
 class _Sink:

@@ -109,10 +109,11 @@ class Diagnostics:
         if bag is None:
             return self._status('recorder', _OK, 'not recording', {'lost before': self._run.lost})
         recorder = bag.recorder
-        level = _ERROR if recorder.error else _WARN if recorder.lost else _OK
-        return self._status('recorder', level, recorder.error or 'recording', {
-            'file': bag.path, 'messages': recorder.messages, 'lost': recorder.lost,
-            'lost before': self._run.lost})
+        level = _ERROR if recorder.is_failing else _WARN if recorder.lost else _OK
+        message = recorder.error if recorder.is_failing else 'recording'
+        return self._status('recorder', level, message, {
+            'file': bag.path, 'messages': recorder.messages, 'waiting': recorder.waiting,
+            'may wait': recorder.capacity, 'lost': recorder.lost, 'lost before': self._run.lost})
 
     def _status(self, task, level, message, values):
         return {'level': level, 'name': f'{self._name}: {task}', 'message': message,

@@ -11,13 +11,18 @@ from ..scene import did_you_mean, Quantity, SceneError
 
 @dataclass(frozen=True)
 class Own:
-    """A parameter of the node itself; choices: the strings allowed, None for any."""
+    """
+    A parameter of the node itself.
+
+    choices: the strings allowed, None for any; least: smallest number beside 0.
+    """
 
     default: object
     description: str
     quantity: Quantity | None = None
     read_only: bool = False
     choices: tuple | None = None
+    least: float = 0.0
 
 
 OWN = {
@@ -48,6 +53,15 @@ OWN = {
     'record.directory': Own('runs', 'folder for bags; a change holds for the next one'),
     'record.compression': Own('zstd', 'compression of bags: ' + ', '.join(COMPRESSIONS)
                               + '; a change holds for the next one', choices=tuple(COMPRESSIONS)),
+    'record.max_size': Own(0.0, 'size of a file beyond which a bag goes on in another one [MB], '
+                                '0 = any; a change holds for the next bag',
+                           Quantity('MB', 'size', minimum=0.0, maximum=1e9), least=1.0),
+    'record.max_duration': Own(0.0, 'simulated time after which a bag goes on in another file '
+                                    '[s], 0 = any; a change holds for the next bag',
+                               Quantity('s', 'duration', minimum=0.0, maximum=1e9), least=1.0),
+    'record.sync': Own(1.0, 'how often a bag is brought to the disk [s], 0 = when the operating '
+                            'system chooses to; a change holds for the next bag',
+                       Quantity('s', 'period', minimum=0.0, maximum=1e6), least=0.01),
 }
 
 
@@ -55,7 +69,11 @@ def check_own(name, value):
     """Return the value for one of the node's own parameters; raise SceneError."""
     own = OWN[name]
     if own.quantity is not None:
-        return own.quantity.check(name, value)
+        number = own.quantity.check(name, value)
+        if 0.0 < number < own.least:
+            raise SceneError(f'{name}: {own.quantity.with_unit(number)} is too little: give 0, or '
+                             f'{own.quantity.with_unit(own.least)} at least')
+        return number
     if not isinstance(value, type(own.default)):
         kind = {bool: 'true or false', str: 'a text'}[type(own.default)]
         raise SceneError(f'{name}: {value!r} is not {kind}')

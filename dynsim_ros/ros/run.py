@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A live run: the simulator, what it publishes and records, and what happens to it."""
 
+import os
 import time
 
-from ..bag.run_bag import new_path, RunBag
+from ..bag.bag_files import Limits
+from ..bag.bag_names import new_path
+from ..bag.run_bag import RunBag
 from ..messages.channel import Channel
 from ..messages.qos import STATE
 from ..scene import SceneError
@@ -41,7 +44,6 @@ class Run:
         self._name = node.get_fully_qualified_name()
         self._resolve = topics.resolve
         self._log = node.get_logger()
-        self._bag_error = None
         self._unrecorded = []
         self._detached = []
 
@@ -120,7 +122,7 @@ class Run:
                 self.bag.put_rows(self.topics.rows, self.stamp_ns, rows)
             if messages:
                 self.bag.put(self.stamp_ns, messages)
-            self._report_bag_error()
+            self._tell_news(self.bag)
 
     def begin(self, origin_ns):
         """End the waiting: publish, and record what was commanded meanwhile."""
@@ -179,29 +181,30 @@ class Run:
         except OSError as error:
             raise SceneError(f'record.directory: {directory} cannot be written to: '
                              f'{error.strerror or error}; choose another folder') from None
-        self._bag_error = None
         self._log.info(f'recording to {self.bag.path}')
         return self.bag.path
 
     def _new_bag(self, directory):
         """Return a new RunBag; another node may choose the same name at the same moment."""
+        options = self._options
+        size, seconds = options['record.max_size'], options['record.max_duration']
+        limits = Limits(size * 1e6 or None, round(seconds * 1e9) or None)
         while True:
-            path = new_path(directory, self.simulator.scene.name)
+            path = new_path(directory, self.simulator.scene.name, limits.are_set)
             try:
                 return RunBag(
                     path, self.simulator, [*self.topics.channels, DIAGNOSTICS],
-                    self.topics.rows, node=self._name,
-                    resolve=self._resolve, compression=self._options['record.compression'],
-                    parameters=self._options)
+                    self.topics.rows, node=self._name, resolve=self._resolve,
+                    compression=options['record.compression'], parameters=options,
+                    limits=limits, sync_period=options['record.sync'])
             except FileExistsError:
-                if not path.exists():
+                if not os.path.lexists(path):
                     raise
 
     def detach_bag(self):
         """End the recording, of which finish_bags does the rest; return whether there was one."""
         if self.bag is None:
             return False
-        self._report_bag_error()
         self._detached.append(self.bag)
         self.bag = None
         return True
@@ -216,15 +219,20 @@ class Run:
         while self._detached:
             bag = self._detached.pop(0)
             bag.close()
+            self._tell_news(bag)
             recorder = bag.recorder
             self.lost += recorder.lost
-            lost = f', {recorder.lost} lost: {recorder.error or "the disk was too slow"}'
-            text = f'{recorder.messages} messages in {bag.path}' + (lost if recorder.lost else '')
+            lost = f', {recorder.lost} lost: {recorder.error}' if recorder.lost else ''
+            text = f'{bag.content}{lost}'
             self._log.info(f'recorded {text}')
         return text
 
-    def _report_bag_error(self):
-        error = self.bag.recorder.error
-        if error is not None and error != self._bag_error:
-            self._bag_error = error
-            self._log.error(f'recorder: {error}; the run goes on')
+    def _tell_news(self, bag):
+        """Log what happened to a bag."""
+        news = bag.recorder.news
+        while news:
+            is_error, line = news.popleft()
+            if is_error:
+                self._log.error(f'recorder: {line}; the run goes on')
+            else:
+                self._log.warning(f'recorder: {line}')

@@ -21,6 +21,7 @@ from .message_types import message_class
 from .pacing import Pacer
 from .parameters import Parameters, refused
 from .qos import profile
+from .recovering import Recovering
 from .run import Run
 from .services import Services
 from .ticker import Ticker
@@ -83,6 +84,7 @@ class SimNode(Node):
         self._epoch_publisher = self.create_publisher(
             message_class(EPOCH.type_name), f'~/{EPOCH.topic}', profile(EPOCH.qos))
         self._own_timers = []
+        self._recovering = None
         self._restoring = False
         self.add_post_set_parameters_callback(self._parameters_were_set)
 
@@ -107,10 +109,12 @@ class SimNode(Node):
         """
         Publish the initial state, start recording if wanted, and let the run tick.
 
-        Raises SceneError if a bag cannot be made.
+        Bags that were interrupted are recovered meanwhile. Raises SceneError if a bag cannot be
+        made.
         """
         if self.parameters.own['publish_clock']:
             self._clock_publisher.begin()
+        self._recovering = Recovering(self.parameters.own['record.directory'], self.get_logger())
         if self.parameters.own['record.enable']:
             self.run.start_recording()
         self._begin_epoch()
@@ -130,6 +134,8 @@ class SimNode(Node):
             timer.cancel()
         if self.handles is not None:
             self.handles.end()
+        if self._recovering is not None:
+            self._recovering.end()
         return self.compiling.give_up()
 
     def set_parameters_atomically(self, parameter_list):

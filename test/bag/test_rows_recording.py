@@ -118,7 +118,7 @@ def test_many_ticks_at_once_are_the_same_file_content(tmp_path, simulator, rows)
 
 def test_recording_keeps_no_memory(tmp_path, simulator, rows):
     """Neither what was written nor what the summary will tell of it."""
-    with Recorder(BagWriter(tmp_path / 'run.mcap', chunk_size=2000), capacity=1000,
+    with Recorder(BagWriter(tmp_path / 'run.mcap', chunk_size=1000), capacity=1000,
                   wait=True) as recorder:
         recorder.declare_rows(rows, [recorder.add_channel(f'/{channel.topic}', channel.type_name)
                                      for channel in rows.channels])
