@@ -65,10 +65,15 @@ class LoadedRun(LoadedBag):
         recorded = self.metadata.get(PARAMETER_METADATA, {})
         return {name: json.loads(text) for name, text in recorded.items()}
 
+    @property
+    def has_scene(self) -> bool:
+        """Tell whether the bag holds its scene: others may attach what merely has the name."""
+        return bool(self.info) and SCENE_ATTACHMENT in self.attachments
+
     @cached_property
     def scene(self) -> Scene:
         """Return the scene in which the run began; raises BagError where the bag has none."""
-        if SCENE_ATTACHMENT not in self.attachments:
+        if not self.has_scene:
             raise BagError(f'{self.path} holds no scene: dynsim_ros did not record it')
         return parse_scene(self.attachments[SCENE_ATTACHMENT][1].decode())
 
@@ -85,7 +90,7 @@ class LoadedRun(LoadedBag):
 
     def _must_turn(self, name: str):
         """Raise BagError for what the scene knows to have no orientation."""
-        if SCENE_ATTACHMENT not in self.attachments:
+        if not self.has_scene:
             return
         member = self.scene.ends.get(name)
         if member is not None and not isinstance(member, Rigid):

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 import matplotlib.style
-from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
+from matplotlib.ticker import FixedLocator, Formatter, MaxNLocator
+import numpy as np
 
 from .plot_comparison import DIFFERENCE, difference
 from .plot_panels import Block, Panel
@@ -36,8 +37,10 @@ _STYLE = {
     'legend.frameon': False, 'legend.borderaxespad': 0.0, 'legend.handlelength': 1.4,
     'legend.columnspacing': 1.2, 'legend.labelspacing': 0.2, 'legend.borderpad': 0.2,
     'pdf.fonttype': 42, 'svg.hashsalt': 'dynsim_ros'}
-# Dots an inch of a PNG, and what is reckoned with where there are none.
-_DOTS, _FINE = 200, 300
+# Dots an inch of a PNG. Columns an inch that curves are thinned to: four a dot, by which lines
+# look as if all were drawn, or what print can show.
+_DOTS = 200
+_FINE, _PRINT = 4 * _DOTS, 300
 # Nothing of when a file was made: the same panels give the same bytes.
 _METADATA = {'.png': {}, '.pdf': {'CreationDate': None}, '.svg': {'Date': None}}
 ENDINGS = tuple(_METADATA)
@@ -51,8 +54,8 @@ def draw(bands: list[list[Block]], time_label: str, path: Path,
     names: of the two runs, where panels have another one to compare with. Returns the figure.
     """
     with matplotlib.style.context(['default', _STYLE]):
-        dots = _DOTS if path.suffix == '.png' else _FINE
-        figure = _Drawing(Sheet(bands), time_label, names, dots).figure
+        fineness = _FINE if path.suffix == '.png' else _PRINT
+        figure = _Drawing(Sheet(bands), time_label, names, fineness).figure
         path.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path, dpi=_DOTS, metadata=_METADATA[path.suffix])
     return figure
@@ -61,9 +64,11 @@ def draw(bands: list[list[Block]], time_label: str, path: Path,
 class _Drawing:
     """A figure, drawn."""
 
-    def __init__(self, sheet: Sheet, time_label: str, names: tuple[str, str] | None, dots: int):
+    def __init__(self, sheet: Sheet, time_label: str, names: tuple[str, str] | None,
+                 fineness: int):
         self.figure = Figure(figsize=(sheet.width, sheet.height))
-        self._size, self._dots, self._time_label = (sheet.width, sheet.height), dots, time_label
+        self._size, self._fineness = (sheet.width, sheet.height), fineness
+        self._time_label = time_label
         panels = [place.panel for place in sheet.places]
         times = [part.time for panel in panels for part in (panel, panel.other) if part]
         self._span = min(time[0] for time in times), max(time[-1] for time in times)
@@ -116,9 +121,9 @@ class _Drawing:
         axes.set_xlim(self._span)
         axes.set_ylim(low, high)
         few = 2 if box.height < 0.8 else 4
-        axes.yaxis.set_major_locator(MaxNLocator(few) if largest else FixedLocator([0.0]))
-        axes.yaxis.set_major_formatter(FuncFormatter(
-            lambda value, _: f'{value / scale:.10g}'.replace('-', '−')))
+        axes.yaxis.set_major_locator(MaxNLocator(few, steps=[1, 2, 2.5, 5, 10]) if largest
+                                     else FixedLocator([0.0]))
+        axes.yaxis.set_major_formatter(_Numbers(scale))
         axes.set_ylabel(_label(panels[0], unit))
         axes.yaxis.set_label_coords(-0.48 / box.width, 0.5)
         axes.tick_params(labelbottom=has_times)
@@ -127,12 +132,30 @@ class _Drawing:
 
     def _draw(self, axes: Axes, panel: Panel, names: list[str], style: dict):
         """Draw curves of a panel, those that it has."""
-        columns = round(axes.get_position().width * self._size[0] * self._dots)
+        columns = round(axes.get_position().width * self._size[0] * self._fineness)
         for name in names:
             if name in panel.curves:
                 curve = panel.curves[name]
                 axes.plot(*thinned(panel.time, curve, columns), color=_colour(name, names),
                           label=name, marker='.' if len(curve) == 1 else '', **style)
+
+
+class _Numbers(Formatter):
+    """The numbers beside an axis in units of so much, all with as many decimals as one needs."""
+
+    def __init__(self, scale: float):
+        self._scale = scale
+
+    def __call__(self, value: float, _=None) -> str:
+        """Return the text of a number."""
+        return self.format_ticks([value])[0]
+
+    def format_ticks(self, values) -> list[str]:
+        """Return the texts of the numbers of an axis."""
+        numbers = [float(f'{value / self._scale:.10g}') for value in values]
+        texts = [np.format_float_positional(number, trim='-') for number in numbers]
+        decimals = max(len(text.partition('.')[2]) for text in texts) if texts else 0
+        return [f'{number:.{decimals}f}'.replace('-', '−') for number in numbers]
 
 
 def _colour(name: str, names: list[str]) -> str:

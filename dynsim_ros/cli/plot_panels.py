@@ -12,7 +12,6 @@ import numpy as np
 
 from ..bag.load_columns import element_names, vectors
 from ..bag.load_run import LoadedRun
-from ..bag.run_bag import SCENE_ATTACHMENT
 from ..scene import Anchor, Particle, Rigid
 
 # By type of message: what it tells, with its unit, and where that stands.
@@ -55,8 +54,8 @@ class Panel:
 
     @property
     def has_key(self) -> bool:
-        """Tell whether its curves are named in a key of its own: axes have one for all."""
-        return len(self.shown) > 1 and not set(self.shown) <= set('xyzw')
+        """Tell whether its curves are named in a key of its own: x to w have one for all."""
+        return not set(self.shown) <= {*'xyzw', self.label}
 
 
 @dataclass
@@ -111,7 +110,7 @@ def bands(run: LoadedRun, anchors: Container[str] | None = None) -> list[list[Bl
 
 def _members(run: LoadedRun) -> Mapping[str, Particle | Anchor]:
     """Return bodies and anchors of a run by name, none where the bag has no scene."""
-    return run.scene.ends if SCENE_ATTACHMENT in run.attachments else {}
+    return run.scene.ends if run.has_scene else {}
 
 
 def _side_by_side(blocks: Iterable[Block]) -> list[list[Block]]:

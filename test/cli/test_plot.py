@@ -6,7 +6,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 
-from bag_samples import sample_messages, write_foreign
+from bag_samples import sample_messages, write_foreign, write_sample
 from dynsim_ros.bag import load
 from dynsim_ros.cli import plot_figure, simulate
 from dynsim_ros.cli.plot import main
@@ -107,9 +107,25 @@ def test_everything_that_a_bag_has(drawn, sphere, tmp_path):
 def test_numbers_beside_an_axis_are_in_its_unit(drawn, sphere, tmp_path):
     figure = drawn(sphere, '-o', tmp_path / 'a.png', '--topics', 'wrench/air')
     (axes,) = axes_of(figure)['air torque [mN m]']
-    figure.canvas.draw()
+    FigureCanvasAgg(figure).draw()
     for tick, label in zip(axes.get_yticks(), axes.get_yticklabels()):
         assert float(label.get_text().replace('−', '-')) == pytest.approx(tick * 1e3)
+
+
+def test_numbers_beside_an_axis_have_as_many_decimals(drawn, sphere, tmp_path):
+    figure = drawn(sphere, '-o', tmp_path / 'a.png', '--topics', 'sphere/pose')
+    (axes,) = axes_of(figure)['position [m]']
+    numbers = axes.yaxis.get_major_formatter()
+    assert numbers.format_ticks([-0.5, 0, 1]) == ['−0.5', '0.0', '1.0']
+    assert numbers.format_ticks([0.0, 20.0]) == ['0', '20']
+
+
+def test_a_curve_by_itself_has_its_name(drawn, folder, tmp_path):
+    figure = drawn(simulated(folder, 'falling_in_wind', 'wind'), '-o', tmp_path / 'a.png',
+                   '--topics', 'energy')
+    (axes,) = axes_of(figure)['work done [J]']
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ['air']
+    assert axes_of(figure)['imbalance [J]'][0].get_legend() is None
 
 
 def test_what_a_particle_has(drawn, folder, tmp_path):
@@ -125,7 +141,7 @@ def test_what_a_particle_has(drawn, folder, tmp_path):
 
 def test_two_bodies_side_by_side(drawn, folder, tmp_path):
     path = simulated(folder, 'double_pendulum_of_spheres', 'two')
-    figure = drawn(path, '-o', tmp_path / 'a.png')
+    figure = drawn(path, '-o', tmp_path / 'a.png', '--topics', '?*er/pose', 'energy')
     run = load(path)
     assert [text.get_text() for text in figure.texts] == ['upper', 'lower', 'energy']
     upper, lower = axes_of(figure)['position [m]']
@@ -137,7 +153,8 @@ def test_two_bodies_side_by_side(drawn, folder, tmp_path):
 
 def test_nothing_lies_upon_anything_else(drawn, folder, sphere, moved, tmp_path):
     two = simulated(folder, 'double_pendulum_of_spheres', 'two_bodies')
-    for arguments in ([two], [sphere, '--compare', moved]):
+    compared = [sphere, '--compare', moved, '--topics', '*/pose', '*/spring', 'energy']
+    for arguments in ([two], compared):
         figure = drawn(*arguments, '-o', tmp_path / 'a.png')
         renderer = FigureCanvasAgg(figure).get_renderer()
         boxes = [part.get_tightbbox(renderer)
@@ -206,8 +223,11 @@ def test_a_quaternion_does_not_jump_to_its_opposite(sphere):
 
 def test_anchors_that_move(drawn, moved, sphere, tmp_path):
     assert moving_anchors(load(moved)) == {'hand'} and moving_anchors(load(sphere)) == set()
-    assert 'hand position [m]' in axes_of(drawn(moved, '-o', tmp_path / 'a.png'))
-    assert 'hand position [m]' not in axes_of(drawn(sphere, '-o', tmp_path / 'a.png'))
+    for path, anchors in ((moved, ['anchors']), (sphere, [])):
+        run = load(path)
+        found = bands(run, moving_anchors(run))
+        assert [block.heading for band in found for block in band] == [
+            'sphere', *anchors, 'energy']
     asked = drawn(sphere, '-o', tmp_path / 'a.png', '--topics', 'hand/pose')
     assert set(axes_of(asked)) == {'hand position [m]'}
 
@@ -230,6 +250,11 @@ def test_bags_of_others(drawn, tmp_path):
     assert_drawn(axes_of(figure)['position [m]'][0], np.arange(50) / 100, run.position('sample'))
     assert {axes.get_xlabel() for axes in figure.axes} == {
         '', 'time since the first message [s]'}
+
+
+def test_a_file_of_others_that_has_the_name_of_a_scene(tmp_path):
+    write_sample(tmp_path / 'a.mcap', count=9)
+    assert main([str(tmp_path / 'a.mcap'), '-o', str(tmp_path / 'a.png'), '-q']) == 0
 
 
 def test_one_message(drawn, sphere, tmp_path):
@@ -267,7 +292,8 @@ def test_what_only_one_of_two_has(folder, sphere, tmp_path, capsys):
 
 def test_a_file_that_is_cut_off(sphere, tmp_path, capsys):
     (tmp_path / 'cut.mcap').write_bytes(sphere.read_bytes()[:-400])
-    assert main([str(tmp_path / 'cut.mcap'), '-o', str(tmp_path / 'a.png'), '-q']) == 0
+    assert main([str(tmp_path / 'cut.mcap'), '-o', str(tmp_path / 'a.png'), '-q', '--topics',
+                 'energy']) == 0
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith('warning: the file ends in the middle of a record: ')
 
