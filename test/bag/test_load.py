@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of any writer as arrays, beside what the message-wise readers make of them."""
 
+import sys
+
 from bag_samples import KINDS_OF_MCAP, sample_messages, TOPICS, write_foreign, write_sample
 from dynsim_ros.bag import load
 from dynsim_ros.bag.reader import BagError, open_bag
@@ -73,6 +75,28 @@ def test_disorder_and_several_channels_of_a_topic(tmp_path, chunking):
                   [LATCHED.offered_qos_profiles(), Qos().offered_qos_profiles()],
                   use_chunking=chunking)
     assert content(load(tmp_path / 'a.mcap')) == expected(mixed)
+
+
+def test_no_message_costs_python_calls(tmp_path):
+    counts = []
+    for number, count in enumerate((100, 100, 2000)):
+        path = tmp_path / f'{number}.mcap'
+        write_sample(path, count)
+        calls = 0
+
+        def profile(_, event, _argument):
+            nonlocal calls
+            calls += event in ('call', 'c_call')
+
+        sys.setprofile(profile)
+        try:
+            run = load(path)
+        finally:
+            sys.setprofile(None)
+        assert len(run['pose']) == count
+        counts.append(calls)
+    # The first one loads what was compiled. The last one has more messages, by 3800, and chunks.
+    assert counts[2] - counts[1] < 380
 
 
 def test_what_is_asked_for(tmp_path):
