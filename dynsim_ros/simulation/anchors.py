@@ -30,6 +30,21 @@ class Anchors:
         motion[:, :3] += motion[:, 3:] * ((time_ns - self.since) * 1e-9)
         return motion
 
+    def under_way(self, i):
+        """
+        Return what is known of the future and the past of anchor i.
+
+        (arrival [ns], its target (3,) [m]) or None, and when it was commanded last [ns] or None.
+        """
+        return self._targets.get(i), self._commanded.get(i)
+
+    def put_under_way(self, i, target, commanded):
+        """Let what under_way returns be so."""
+        for where, value in ((self._targets, target), (self._commanded, commanded)):
+            where.pop(i, None)
+            if value is not None:
+                where[i] = value
+
     def rebase(self, time_ns):
         """Let `since` be an instant before the next change."""
         # In place: the kernels hold on to this array.

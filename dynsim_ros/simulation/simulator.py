@@ -4,6 +4,7 @@
 
 import copy
 from dataclasses import replace
+import math
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from .layout import Layout
 from .rows.kernel import Instants, prepare_rows
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
+from .step_memory import recall, remember
 from .trajectory import Trajectory
 from ..integrators import DEFAULT_METHOD, IntegrationError, kernel_kind, new_steps
 from ..physics.drive import Drive
@@ -72,16 +74,19 @@ class Simulator:
         if self._steps is not None:
             self._counted = self.counts
         self._steps = None
-        self._is_begun = False
+        # In which state the motion that now goes on began, if it has begun.
+        self._begun_in, self._is_begun = None, False
 
     def _begin_steps(self):
         """Let the integration begin at the present instant, under what is in force."""
         if self._steps is None:
-            self._steps = new_steps(self.settings, self._model, self._drive(self._anchors),
-                                    self.layout.size)
+            self._steps = self._new_steps()
         self._anchors.rebase(self.time_ns)
         self._steps.begin(self.time_ns, self._state)
-        self._is_begun = True
+        self._begun_in, self._is_begun = self._state, True
+
+    def _new_steps(self):
+        return new_steps(self.settings, self._model, self._drive(self._anchors), self.layout.size)
 
     def _drive(self, anchors):
         # Anchors can be commanded to move, and bodies be pushed, at any time: without a pause for
@@ -115,7 +120,8 @@ class Simulator:
         """Return the Snapshot of the present instant."""
         return Snapshot(self.time_ns, self.tick, self.epoch, self.scene, self.layout, self._model,
                         self._state.copy(), self._anchors.motion_at(self.time_ns),
-                        self._pushes.copy(), self._reference_energy)
+                        self._pushes.copy(), self._reference_energy, self.settings,
+                        (dict(self._push_ends), self._under_way()))
 
     def instant(self):
         """Return the Instants of the present one, to be used before anything changes."""
@@ -125,9 +131,14 @@ class Simulator:
 
     def prepare(self):
         """Compile, or load from the disk cache, all that a tick of this scene needs."""
-        if not self._is_begun:
+        is_first, was_begun = self._steps is None, self._is_begun
+        if not was_begun:
             self._begin_steps()
         self._steps.prepare()
+        self._is_begun = was_begun
+        if is_first:
+            # What was found out about the first step is not to outlive a command that comes now.
+            self._steps.reset()
         self._energy()
         prepare_rows(self.instant())
 
@@ -147,6 +158,64 @@ class Simulator:
         anchors.rebase(self.time_ns)
         _set_anchors(anchors, scene, values)
         return kernel_kind(settings, build_model(scene), self._drive(anchors), self._state)
+
+    def memory(self):
+        """
+        Return all that the run depends on from here on, beside scene and settings, as plain values.
+
+        A dict of numbers, lists and such dicts: see docs/rerunning.md.
+        """
+        anchors, goes_on = self._anchors, self.failure is None
+        return {
+            'time_ns': self.time_ns, 'tick': self.tick, 'failure': self.failure,
+            'state': self._state.tolist(), 'reference_energy': float(self._reference_energy),
+            'pushes': self._pushes.tolist(), 'push_ends_ns': dict(self._push_ends),
+            'anchors': {'since_ns': anchors.since, 'motion': anchors.motion.tolist(),
+                        'under_way': self._under_way()},
+            'counted': list(self._counted),
+            'begun_in': self._begun_in.tolist() if self._is_begun and goes_on else None,
+            'steps': remember(self._steps) if self._steps is not None and goes_on else None}
+
+    def recall(self, memory):
+        """
+        Go on from where a simulator of the same scene and settings stood, to the same bits.
+
+        memory: what `memory` returned. Raises ValueError, KeyError or TypeError for what is no
+        such memory; is then no longer to be used.
+        """
+        self.reset()
+        self.time_ns, self.tick = int(memory['time_ns']), int(memory['tick'])
+        self.failure = memory['failure']
+        for array, values in ((self._state, memory['state']), (self._pushes, memory['pushes'])):
+            array[:] = _numbers(values, array.shape)
+        self._reference_energy = float(memory['reference_energy'])
+        self._push_ends.update((self._known(body), int(end))
+                               for body, end in memory['push_ends_ns'].items())
+        self._anchors.since = int(memory['anchors']['since_ns'])
+        self._anchors.motion[:] = _numbers(memory['anchors']['motion'],
+                                           self._anchors.motion.shape)
+        for i, (target, commanded) in enumerate(memory['anchors']['under_way']):
+            self._anchors.put_under_way(i, target, commanded)
+        self._recall_steps(memory)
+
+    def _recall_steps(self, memory):
+        steps, begun_in = memory['steps'], memory['begun_in']
+        if steps is not None:
+            self._steps = self._new_steps()
+            begun = None
+            if begun_in is not None:
+                self._begun_in, self._is_begun = _numbers(begun_in, self._state.shape), True
+                begun = self._anchors.since, self._begun_in
+            recall(self._steps, steps, begun)
+        self._counted = tuple(map(int, memory['counted']))
+
+    def _known(self, body):
+        if body not in self.layout.bodies:
+            raise ValueError(f"'{body}' is no body")
+        return body
+
+    def _under_way(self):
+        return [self._anchors.under_way(i) for i in range(len(self.scene.anchors))]
 
     def copy(self):
         """Return a Simulator that stands where this one does, and goes its own way from there."""
@@ -361,3 +430,11 @@ def _is_finite(state):
     """Return whether a state and all that is computed from it are finite numbers."""
     # Not a number is not below anything.
     return bool(np.abs(state).max() < _LARGEST)
+
+
+def _numbers(values, shape):
+    """Return values as an array of a shape; raise ValueError if they are none."""
+    array = np.array(values, float)
+    if array.size != math.prod(shape) or not np.isfinite(array).all():
+        raise ValueError(f'{array.size} numbers where {math.prod(shape)} finite ones are expected')
+    return array.reshape(shape)

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from .layout import Layout
+from .settings import Settings
 from ..physics.energies import energies
 from ..physics.model import Model
 from ..physics.state import WORKS
@@ -59,7 +60,9 @@ class Snapshot:
     state: np.ndarray
     anchors: np.ndarray
     pushes: np.ndarray
-    reference_energy: float = 0.0
+    reference_energy: float
+    settings: Settings
+    under_way: tuple
 
     def position(self, body):
         """Return the position of a body's centre of mass: (3,) [m]."""
