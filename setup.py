@@ -94,6 +94,7 @@ setup(
             f'plot = {NAME}.cli.plot:main',
             f'recover = {NAME}.cli.recover:main',
             f'replay = {NAME}.cli.replay:main',
+            f'rerun = {NAME}.cli.rerun:main',
             f'sim_node = {NAME}.cli.sim_node:main',
             f'simulate = {NAME}.cli.simulate:main',
         ],

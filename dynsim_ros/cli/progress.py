@@ -6,9 +6,13 @@ from __future__ import annotations
 
 import shutil
 import sys
+import time
 from typing import TextIO
 
 from .terminal import write
+
+# How often it is drawn at most [s].
+_PERIOD = 0.05
 
 
 class Progress:
@@ -24,11 +28,13 @@ class Progress:
         self._total = total
         self._quiet = quiet
         self._drawing = not quiet and self._stream.isatty()
+        self._next = 0.0
 
     def show(self, done: float, note: str = ''):
-        """Draw the bar at `done` seconds, with a note behind it."""
-        if not self._drawing:
+        """Draw the bar at `done` seconds, with a note behind it, unless it is quite new."""
+        if not self._drawing or time.monotonic() < self._next:
             return
+        self._next = time.monotonic() + _PERIOD
         share = min(done / self._total, 1.0) if self._total > 0 else 1.0
         text = f' {share:4.0%}  {done:.1f} of {self._total:.1f} s  {note}'
         width = shutil.get_terminal_size().columns - 1

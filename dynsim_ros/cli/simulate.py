@@ -61,39 +61,26 @@ def _simulate(args, signals) -> int:
     options = _parser(args).parse_args(args)
     # Imported here so that --help is quick.
     from ..bag.bag_names import new_path
-    from ..bag.run_bag import RunBag
-    from ..messages.scene_channels import scene_channels
-    from ..messages.tick_rows import TickRows
+    from ..bag.run_sink import RunSink
     from ..scene import load_scene
     from ..simulation.command_file import read_commands
     from ..simulation.error_estimate import estimate_error
     from ..simulation.offline import OfflineRun, simulator_with
 
-    simulator = simulator_with(load_scene(options.scene), _values(options.set))
+    simulator = simulator_with(load_scene(options.scene), named_values(options.set))
     commands = read_commands(options.commands, simulator.scene) if options.commands else []
     path = options.output or new_path('runs', simulator.scene.name)
     progress = Progress(options.duration, quiet=options.quiet)
     progress.say(f'{simulator.scene.name}: {options.duration:g} s with '
                  f'{simulator.settings.integrator} at {simulator.settings.rate:g} Hz')
     simulator.prepare()
-    channels = scene_channels(simulator.scene, simulator.layout)
-    rows = TickRows(channels, simulator.layout)
     signals.hold()
-    bag = RunBag(path, simulator, channels, rows, compression=options.compression, wait=True)
-    run = OfflineRun(simulator, commands, _Sink(bag, channels, rows, progress))
+    bag = RunSink(path, simulator, compression=options.compression,
+                  tell=lambda time_ns: progress.show(time_ns * 1e-9))
+    run = OfflineRun(simulator, commands, bag)
     started = time.monotonic()
-    try:
-        # Without a bag there is no use in going on.
-        status, error = _run(run, options.duration,
-                             lambda: signals.requested or bag.recorder.is_failing)
-    finally:
-        bag.close()
-        progress.clear()
+    status, error = run_to_end(run, options.duration, bag, progress, signals)
     elapsed = time.monotonic() - started
-    if bag.recorder.error:
-        status, error = 2, _of_bag(bag, simulator)
-    elif signals.requested:
-        status = 130
     if simulator.shortfall:
         progress.say(simulator.shortfall)
     progress.say(f'{simulator.time:g} s simulated in {elapsed:.2f} s '
@@ -111,54 +98,25 @@ def _simulate(args, signals) -> int:
     return status
 
 
-def _run(run, duration, is_stopped):
-    """Run to the end; return the exit status and, where it went wrong, an error."""
+def run_to_end(run, duration, bag, progress, signals):
+    """Run into a RunSink and finish it; return the exit status and what went wrong, or None."""
     from ..simulation import DivergenceError
 
+    status, error = 0, None
     try:
-        run.run(duration, is_stopped)
-    except DivergenceError as error:
-        return 1, str(error)
-    return 0, None
+        # Without a bag there is no use in going on.
+        run.run(duration, lambda: signals.requested or bag.is_failing)
+    except DivergenceError as diverged:
+        status, error = 1, str(diverged)
+    finally:
+        bag.close()
+        progress.clear()
+    if bag.error:
+        return 2, bag.error
+    return (130 if signals.requested else status), error
 
 
-def _of_bag(bag, simulator):
-    """Return in one line what went wrong with a bag."""
-    recorder = bag.recorder
-    remedy = f'; make room and run: recover {bag.path}' if recorder.unfinished else ''
-    return f'{recorder.error}; the run was ended at {simulator.time:g} s{remedy}'
-
-
-class _Sink:
-    """Takes the ticks and commands of a run into a bag."""
-
-    def __init__(self, bag, channels, rows, progress):
-        self._bag = bag
-        self._others = [channel for channel in channels if channel.row is None]
-        self._rows = rows
-        self._all = rows.of()
-        self._progress = progress
-        self._next = 0.0
-
-    def tick(self, simulator):
-        """Record what is due at a tick, and show how far the run is."""
-        time_ns, tick_ns = simulator.time_ns, simulator.settings.tick_ns
-        self._rows.fill(simulator.instant(), time_ns, self._all)
-        self._bag.put_rows(self._rows, time_ns, self._all)
-        messages = {channel.topic: channel.encode(simulator.snapshot(), time_ns)
-                    for channel in self._others if channel.is_due(simulator.tick, tick_ns)}
-        if messages:
-            self._bag.put(time_ns, messages)
-        if time.monotonic() >= self._next:
-            self._next = time.monotonic() + 0.1
-            self._progress.show(time_ns * 1e-9)
-
-    def command(self, time_ns, command):
-        """Record a command that took effect."""
-        self._bag.put_command(time_ns, command)
-
-
-def _values(assignments) -> dict:
+def named_values(assignments) -> dict:
     """Return {name: value} from texts NAME=VALUE; raise ValueError."""
     from ..scene import load_yaml
 

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from .cdr import encode
+from .cdr import decode, encode
 from .channel import header
 from ..simulation.commands import MoveAnchor, PushBody, SetValues
 
@@ -12,6 +12,9 @@ POINT = 'geometry_msgs/msg/PointStamped'
 WRENCH = 'geometry_msgs/msg/WrenchStamped'
 PARAMETER = 'rcl_interfaces/msg/Parameter'
 PARAMETER_TOPIC = 'parameter_command'
+# How many of the parameters that follow were set as one group, where it is more than one.
+GROUP = 'std_msgs/msg/UInt32'
+GROUP_TOPIC = 'parameter_group'
 _BOOL, _DOUBLE, _STRING, _DOUBLE_ARRAY = 1, 3, 4, 8
 
 
@@ -32,6 +35,11 @@ def command_topics(scene):
             PARAMETER_TOPIC: PARAMETER}
 
 
+def recorded_command_topics(scene):
+    """Return {topic: type name} of all that command_messages can return."""
+    return {**command_topics(scene), GROUP_TOPIC: GROUP}
+
+
 def command_messages(command, stamp_ns):
     """Return [(topic, CDR bytes)] for a command that took effect at a time [ns]."""
     if isinstance(command, MoveAnchor):
@@ -42,8 +50,34 @@ def command_messages(command, stamp_ns):
         message = {'header': header(stamp_ns), 'wrench': wrench}
         return [(push_topic(command.body), encode(WRENCH, message))]
     assert isinstance(command, SetValues), command
-    return [(PARAMETER_TOPIC, encode(PARAMETER, {'name': name, 'value': parameter_value(value)}))
-            for name, value in command.values.items()]
+    count = len(command.values)
+    group = [(GROUP_TOPIC, encode(GROUP, {'data': count}))] if count > 1 else []
+    return group + [
+        (PARAMETER_TOPIC, encode(PARAMETER, {'name': name, 'value': parameter_value(value)}))
+        for name, value in command.values.items()]
+
+
+def command_of(topic, messages):
+    """
+    Return the command that was recorded as messages, CDR bytes, on one of command_topics.
+
+    Several messages are parameters that were set as a group. Raises ValueError for what is none.
+    """
+    if topic == PARAMETER_TOPIC:
+        parameters = [decode(PARAMETER, data) for data in messages]
+        return SetValues({parameter['name']: value_of(parameter['value'])
+                          for parameter in parameters})
+    (data,) = messages
+    name = topic.partition('/')[0]
+    if topic == anchor_topic(name):
+        return MoveAnchor(name, _numbers(decode(POINT, data)['point']))
+    wrench = decode(WRENCH, data)['wrench']
+    return PushBody(name, _numbers(wrench['force']), _numbers(wrench['torque']))
+
+
+def group_size(data):
+    """Return how many parameters that follow are a group, of CDR bytes on GROUP_TOPIC."""
+    return decode(GROUP, data)['data']
 
 
 def parameter_value(value):
@@ -55,6 +89,19 @@ def parameter_value(value):
     if hasattr(value, '__len__'):
         return {'type': _DOUBLE_ARRAY, 'double_array_value': [float(a) for a in value]}
     return {'type': _DOUBLE, 'double_value': float(value)}
+
+
+def value_of(value):
+    """Return what parameter_value was given, lists for sequences."""
+    field = {_BOOL: 'bool_value', _STRING: 'string_value', _DOUBLE_ARRAY: 'double_array_value',
+             _DOUBLE: 'double_value'}.get(value['type'])
+    if field is None:
+        raise ValueError(f'a parameter of type {value["type"]} is none of a run')
+    return value[field]
+
+
+def _numbers(xyz):
+    return (xyz['x'], xyz['y'], xyz['z'])
 
 
 def _xyz(a):

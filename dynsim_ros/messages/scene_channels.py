@@ -1,12 +1,13 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""The topics of a scene: poses, twists, wrenches, energy, frames, markers. What it has."""
+"""The topics of a scene: poses, twists, wrenches, energy, frames, markers, hash. What it has."""
 
 from __future__ import annotations
 
 from .channel import Channel, WORLD
 from .markers import marker_channel
 from .row import Row
+from .state_hash import STATE_HASH
 from .template import Template
 from .transforms import transform_channel
 from ..scene import Rigid
@@ -31,7 +32,8 @@ def scene_channels(scene, layout, node='/dynsim'):
         channels += [_pose(body, numbers), _twist(body, numbers)]
         channels += [_wrench(kind, body, numbers) for kind in wrench_kinds(scene, body)]
     channels += [_anchor_pose(anchor, numbers) for anchor in scene.anchors]
-    return [*channels, _energy(numbers), transform_channel(scene, node), marker_channel(scene)]
+    return [*channels, _energy(numbers), transform_channel(scene, node), marker_channel(scene),
+            STATE_HASH]
 
 
 def wrench_kinds(scene, body):

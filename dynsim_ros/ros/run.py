@@ -128,10 +128,11 @@ class Run:
         """End the waiting: publish, and record what was commanded meanwhile."""
         self.waiting = False
         self.origin_ns = origin_ns
-        self.publish()
+        # The first state is under these already.
         for command in self._unrecorded:
             self._record_command(command)
         self._unrecorded.clear()
+        self.publish()
 
     def command(self, command):
         """Carry out a command and record it; raise SceneError if it is refused."""
@@ -181,6 +182,8 @@ class Run:
         except OSError as error:
             raise SceneError(f'record.directory: {directory} cannot be written to: '
                              f'{error.strerror or error}; choose another folder') from None
+        # The checkpoint in it is under these.
+        self._unrecorded.clear()
         self._log.info(f'recording to {self.bag.path}')
         return self.bag.path
 
@@ -205,6 +208,8 @@ class Run:
         """End the recording, of which finish_bags does the rest; return whether there was one."""
         if self.bag is None:
             return False
+        if not self.waiting:
+            self.bag.put_last(self.stamp_ns, self.simulator)
         self._detached.append(self.bag)
         self.bag = None
         return True

@@ -217,6 +217,18 @@ class Simulator:
     def _under_way(self):
         return [self._anchors.under_way(i) for i in range(len(self.scene.anchors))]
 
+    def twin(self):
+        """Return a Simulator that stands where this one does and goes on to the same bits."""
+        other = Simulator(self.scene, self.settings)
+        other.recall(copy.deepcopy(self.memory()))
+        other.follow(self)
+        return other
+
+    def follow(self, other):
+        """Let the epoch and what a reset goes back to be those of another Simulator."""
+        self.epoch = other.epoch
+        self.initial_scene, self.initial_settings = other.initial_scene, other.initial_settings
+
     def copy(self):
         """Return a Simulator that stands where this one does, and goes its own way from there."""
         other = copy.copy(self)
@@ -243,6 +255,14 @@ class Simulator:
                 self.advance_tick()
                 done += 1
             count -= done
+
+    def advance_to(self, time_ns):
+        """Advance by whole ticks to an instant; ValueError if none of them ends there."""
+        ticks, rest = divmod(time_ns - self.time_ns, self.settings.tick_ns)
+        if rest or ticks < 0:
+            raise ValueError(f'{time_ns * 1e-9:.9f} s is no whole number of ticks after '
+                             f'{self.time:.9f} s, at {self.settings.rate:g} Hz')
+        self.advance_ticks(ticks)
 
     def _count_even(self, count):
         """Return how many of some ticks, MOST_AT_ONCE at most, end before the next change."""
