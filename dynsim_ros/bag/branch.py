@@ -50,9 +50,7 @@ def branch(run: RecordedRun, begin_ns: int | None, changes: Changes) -> Branch:
     SceneError for changes that are not possible.
     """
     simulator = simulator_at(run, run.begin_ns if begin_ns is None else begin_ns)
-    parent = {'parent': run.path.name, 'parent_epoch': str(simulator.epoch),
-              'parent_tick': str(simulator.tick), 'parent_time_ns': str(simulator.time_ns),
-              'parent_hash': state_hash(simulator.snapshot())}
+    parent = parent_of(run.path.name, simulator)
     recorded, values = run.commands(simulator.time_ns), dict(changes.values or {})
     if begin_ns is None and _has_just_begun(simulator):
         simulator = _begun(simulator, changes.scene or simulator.scene, values)
@@ -66,6 +64,13 @@ def branch(run: RecordedRun, begin_ns: int | None, changes: Changes) -> Branch:
         place = sum(time_ns <= simulator.time_ns for time_ns, _ in commands)
         commands.insert(place, (simulator.time_ns, SetValues(values)))
     return Branch(simulator, commands, parent)
+
+
+def parent_of(name: str, simulator: Simulator) -> dict[str, str]:
+    """Return what a bag says of its parent; name: of its file; simulator: where it is left."""
+    return {'parent': name, 'parent_epoch': str(simulator.epoch),
+            'parent_tick': str(simulator.tick), 'parent_time_ns': str(simulator.time_ns),
+            'parent_hash': state_hash(simulator.snapshot())}
 
 
 def _has_just_begun(simulator):

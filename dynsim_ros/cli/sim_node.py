@@ -26,11 +26,12 @@ and every quantity of the scene, such as gravity [m/s^2], air.linear_drag [N s/m
 <spring>.natural_length [m], <anchor>.position [m]; see: ros2 param describe /dynsim NAME
 
 topics, relative to ~/ (/dynsim): <body>/pose, <body>/twist, <body>/wrench/{spring,damper,air,
-gravity,net}, <anchor>/pose, energy, markers, epoch; also /diagnostics, /tf (if tf2_msgs is
-installed) and, if asked for, /clock
+gravity,net}, <anchor>/pose, energy, markers, epoch, state_hash; also /diagnostics, /tf (if
+tf2_msgs is installed) and, if asked for, /clock
 commands: <anchor>/command (PointStamped), <body>/wrench_command (WrenchStamped),
 parameter_command (rcl_interfaces/Parameter)
-services: ~/pause and ~/record (SetBool), ~/step and ~/reset (Trigger)
+services: ~/pause and ~/record (SetBool), ~/step, ~/step_until, ~/reset, ~/save_state,
+~/load_state and ~/rewind (Trigger)
 
 examples:
   sim_node --ros-args -p scene:=double_pendulum_of_spheres -p record.enable:=true

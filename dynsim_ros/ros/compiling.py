@@ -39,7 +39,8 @@ class Compiling:
         """
         kind = simulator.kernel_kind(values)
         if kind not in self._ready:
-            self._wait(self._begin(simulator, values), ', '.join(values), meanwhile)
+            names = ', '.join(values) or 'the state'
+            self._wait(self._begin(simulator, values), names, meanwhile)
             self._ready.add(kind)
         self.was_changed()
 

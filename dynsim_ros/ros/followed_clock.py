@@ -51,5 +51,6 @@ class FollowedClock:
 
     def was_reset(self):
         """Let the new epoch begin now."""
-        self._run.origin_ns = self._seen = self.now()
-        self._run.waiting = self._run.origin_ns == 0
+        self._seen = self.now()
+        self._run.origin_ns = self._seen - self._run.simulator.time_ns
+        self._run.waiting = self._seen == 0

@@ -14,7 +14,8 @@ class Own:
     """
     A parameter of the node itself.
 
-    choices: the strings allowed, None for any; least: smallest number beside 0.
+    choices: the strings allowed, None for any; least: smallest number beside 0; whole: whether a
+    number has to be a whole one.
     """
 
     default: object
@@ -23,6 +24,7 @@ class Own:
     read_only: bool = False
     choices: tuple | None = None
     least: float = 0.0
+    whole: bool = False
 
 
 OWN = {
@@ -39,6 +41,15 @@ OWN = {
        for name, what in PUBLISH_RATES.items()},
     'publish_wrenches': Own(True, 'publish and record the wrenches'),
     'publish_tf': Own(True, 'publish and record the frames of bodies and anchors on /tf'),
+    'step_count': Own(1.0, 'how many ticks ~/step takes, a whole number',
+                      Quantity('', 'number of ticks', minimum=1.0, maximum=1e9), whole=True),
+    'step_until': Own(0.0, 'simulated time to which ~/step_until goes [s]',
+                      Quantity('s', 'simulated time', minimum=0.0, maximum=1e9)),
+    'state.file': Own('state.json', 'file for ~/save_state and ~/load_state; the latter takes a '
+                      'bag, too'),
+    'state.time': Own(0.0, 'simulated time to which ~/rewind goes back, and of the state that '
+                      '~/load_state takes out of a bag [s]',
+                      Quantity('s', 'simulated time', minimum=0.0, maximum=1e9)),
     'real_time.spin': Own(0.0, 'how long before each deadline to wait busily [s]',
                           Quantity('s', 'busy wait', minimum=0.0, maximum=0.01), read_only=True),
     'real_time.priority': Own(0.0, 'priority of the ticking thread in SCHED_FIFO, 0 = none',
@@ -73,6 +84,8 @@ def check_own(name, value):
         if 0.0 < number < own.least:
             raise SceneError(f'{name}: {own.quantity.with_unit(number)} is too little: give 0, or '
                              f'{own.quantity.with_unit(own.least)} at least')
+        if own.whole and number != int(number):
+            raise SceneError(f'{name}: {number:g} is no whole number')
         return number
     if not isinstance(value, type(own.default)):
         kind = {bool: 'true or false', str: 'a text'}[type(own.default)]

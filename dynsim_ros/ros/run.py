@@ -26,7 +26,8 @@ class Run:
     always up to date; node: the node, for its names and its log; origin_ns: added to simulated
     time in stamps; waiting: True until it is known, nothing is published before. work: how long
     the run's thread has been at steps, publishing and recording, by these names [ns]; lost:
-    messages of bags that have ended which are not in them.
+    messages of bags that have ended which are not in them; history: [(path, simulated time at its
+    beginning [ns])] of the bags that hold how the run came to where it is.
     """
 
     def __init__(self, simulator: Simulator, topics, clock, options, node):
@@ -45,6 +46,7 @@ class Run:
         self._resolve = topics.resolve
         self._log = node.get_logger()
         self._unrecorded = []
+        self.history = []
         self._detached = []
 
     @property
@@ -95,9 +97,9 @@ class Run:
         if is_wanted:
             self.publish()
 
-    def step(self):
-        """Advance by one tick and publish it."""
-        self.advance(1, True)
+    def now(self):
+        """Return tick and time, as the services tell them."""
+        return f'tick {self.simulator.tick}, {self.simulator.time:.9g} s'
 
     def publish(self):
         """Publish and record the present instant."""
@@ -161,33 +163,52 @@ class Run:
 
         Returns why the new one could not be made, in one line, or None.
         """
+        return self._begin_anew(self.simulator.reset)
+
+    def go_on_as(self, simulator, parent, history, begins_bag):
+        """
+        Go on, in a new epoch, as a Simulator of the same kind of scene; else as reset.
+
+        parent: {name: text} about where the state comes from, as RunBag takes it; history: of the
+        bags that hold how it came about; begins_bag: whether one is begun even if there was none.
+        """
+        def take_over():
+            simulator.follow(self.simulator)
+            simulator.epoch += 1
+            self.simulator = simulator
+
+        return self._begin_anew(take_over, parent, history, begins_bag)
+
+    def _begin_anew(self, change, parent=None, history=(), begins_bag=False):
         self._unrecorded.clear()
-        was_recording = self.detach_bag()
-        self.simulator.reset()
-        if was_recording:
+        begins_bag = self.detach_bag() or begins_bag
+        change()
+        self.history = list(history)
+        if begins_bag:
             try:
-                self.start_recording()
+                self.start_recording(parent)
             except SceneError as error:
                 self._log.error(f'no longer recording: {error}')
                 return str(error)
         return None
 
-    def start_recording(self):
+    def start_recording(self, parent=None):
         """Begin a bag and return its path; raise SceneError if it cannot be made."""
         if self.bag is not None:
             raise SceneError(f'recording already, to {self.bag.path}')
         directory = self._options['record.directory']
         try:
-            self.bag = self._new_bag(directory)
+            self.bag = self._new_bag(directory, parent)
         except OSError as error:
             raise SceneError(f'record.directory: {directory} cannot be written to: '
                              f'{error.strerror or error}; choose another folder') from None
         # The checkpoint in it is under these.
         self._unrecorded.clear()
+        self.history.append((self.bag.path, self.simulator.time_ns))
         self._log.info(f'recording to {self.bag.path}')
         return self.bag.path
 
-    def _new_bag(self, directory):
+    def _new_bag(self, directory, parent):
         """Return a new RunBag; another node may choose the same name at the same moment."""
         options = self._options
         size, seconds = options['record.max_size'], options['record.max_duration']
@@ -199,7 +220,7 @@ class Run:
                     path, self.simulator, [*self.topics.channels, DIAGNOSTICS],
                     self.topics.rows, node=self._name, resolve=self._resolve,
                     compression=options['record.compression'], parameters=options,
-                    limits=limits, sync_period=options['record.sync'])
+                    limits=limits, sync_period=options['record.sync'], parent=parent)
             except FileExistsError:
                 if not os.path.lexists(path):
                     raise

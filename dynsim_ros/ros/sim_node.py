@@ -24,6 +24,8 @@ from .qos import profile
 from .recovering import Recovering
 from .run import Run
 from .services import Services
+from .states import States
+from .stepping import Stepping
 from .ticker import Ticker
 from .topics import Topics
 from ..bag.pack_rows import prepare_packing
@@ -76,10 +78,9 @@ class SimNode(Node):
         if follows:
             self._followed = FollowedClock(self.get_clock(), self.run, self.pacer,
                                            self.ticker.mailbox.wake, self._was_set_back)
-        Services(self, self.run, self.ticker.mailbox.ask, resumed=self._resume,
-                 was_reset=self._was_reset, follow_up=self._follow_up)
         self.compiling = Compiling(simulator, self.get_logger(),
                                    lambda: is_ending() or self.run.finished)
+        self._offer_services(is_ending)
         self.diagnostics = Diagnostics(self, self.run, self.ticker, self.pacer, self.audience)
         self._epoch_publisher = self.create_publisher(
             message_class(EPOCH.type_name), f'~/{EPOCH.topic}', profile(EPOCH.qos))
@@ -104,6 +105,13 @@ class SimNode(Node):
     def get_logger(self):
         """Return the logger of this node."""
         return Log(super().get_logger(), self._aside)
+
+    def _offer_services(self, is_ending):
+        run, ask, options = self.run, self.ticker.mailbox.ask, self.parameters.own
+        states = States(run, ask, options, prepare=self._prepare, resumed=self._resume,
+                        goes_on=self._begin_anew, follow_up=self._follow_up)
+        Services(self, run, ask, Stepping(run, is_ending), states, options, resumed=self._resume,
+                 was_reset=self._was_reset, follow_up=self._follow_up)
 
     def begin(self):
         """
@@ -156,6 +164,10 @@ class SimNode(Node):
             return refused(str(error))
         return super().set_parameters_atomically(parameters)
 
+    def _prepare(self, simulator):
+        """Return when all that a Simulator needs is compiled; SceneError if it cannot be."""
+        self.compiling.prepare(simulator, {}, self.audience.look)
+
     def _copy(self):
         """Return a Simulator that stands where the one that runs does."""
         return self.ticker.mailbox.ask(self.run.simulator.copy)
@@ -207,10 +219,14 @@ class SimNode(Node):
         self.executor.create_task(self._follow_up)
 
     def _was_reset(self):
-        """Begin a new epoch, in the run's thread."""
+        """Begin a new epoch with what the start had, in the run's thread."""
+        self.parameters.reset()
+        self._begin_anew()
+
+    def _begin_anew(self):
+        """Begin a new epoch, whose state is there, in the run's thread."""
         if self._followed is not None:
             self._followed.was_reset()
-        self.parameters.reset()
         self.run.topics.rates_changed()
         self.diagnostics.begin()
         self._pace()

@@ -34,10 +34,10 @@ def rows(simulator):
 def record_mixture(path, simulator, rows, compression):
     """Record ticks with rows that change, slow topics and a command; return what was put."""
     channels = scene_channels(simulator.scene, simulator.layout)
-    markers = channels[-1]
+    markers = next(channel for channel in channels if channel.topic == 'markers')
     all_rows, poses = rows.of(), rows.of(rows.channels[:1] + rows.channels[-2:])
     bag = RunBag(path, simulator, channels, rows, compression=compression, wait=True)
-    put = [('/dynsim/epoch', 0, None)]
+    put = [('/dynsim/epoch', 0, None), ('/dynsim/state_hash', 0, None)]
     for tick in range(TICKS):
         stamp = simulator.time_ns
         wanted = all_rows if tick % 10 == 0 else poses
