@@ -11,6 +11,7 @@ NUMBERS = 'std_msgs/msg/Float64MultiArray'
 MARKERS = 'visualization_msgs/msg/MarkerArray'
 DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
 EPOCH = 'std_msgs/msg/UInt64'
+HASH = 'std_msgs/msg/String'
 
 
 def body(name, *wrenches):

@@ -180,8 +180,9 @@ def test_the_file_is_a_finished_ros2_bag(run):
     assert run.summary.statistics.message_count == len(run.messages)
     assert run.reply == f'{len(run.messages)} messages in {run.path.parent.name}/{run.path.name}'
     channels = {channel.topic: channel for channel in run.summary.channels.values()}
-    assert set(channels) == {*run.types, '/tf', '/dynsim/epoch', '/dynsim/hand/command',
-                             '/dynsim/parameter_command', '/dynsim/sphere/wrench_command'}
+    assert set(channels) == {*run.types, '/tf', *map(full, (
+        'epoch', 'state_hash', 'hand/command', 'sphere/wrench_command', 'parameter_command',
+        'parameter_group'))}
     assert {channel.message_encoding for channel in channels.values()} == {'cdr'}
     assert 'rosbag2' not in run.metadata
 

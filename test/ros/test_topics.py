@@ -13,6 +13,7 @@ from scene_topics import (
     DIAGNOSTICS,
     EPOCH,
     forces,
+    HASH,
     MARKERS,
     NUMBERS,
     PARTICLE,
@@ -25,6 +26,7 @@ from std_srvs.srv import SetBool
 TICK = 10_000_000
 # the last two where tf2_msgs and interactive_markers are installed
 OTHERS_HAVE_THEM = {'/rosout', '/parameter_events', '/diagnostics', '/tf', 'handles/update'}
+OF_EVERY_SCENE = {'epoch': EPOCH, 'state_hash': HASH}
 
 
 @pytest.fixture(scope='module')
@@ -52,7 +54,7 @@ def offered(client, name):
 
 def test_topics_and_types(node, client):
     assert {topic: kind for topic, kind in offered(client, node.name).items()
-            if topic not in OTHERS_HAVE_THEM} == {**SPHERE, 'epoch': EPOCH}
+            if topic not in OTHERS_HAVE_THEM} == {**SPHERE, **OF_EVERY_SCENE}
 
 
 def test_commands_and_services(client):
@@ -64,7 +66,8 @@ def test_commands_and_services(client):
     services = dict(client.node.get_service_names_and_types_by_node('dynsim', '/'))
     assert {name: kinds for name, kinds in services.items() if 'std_srvs' in kinds[0]} == {
         '/dynsim/pause': ['std_srvs/srv/SetBool'], '/dynsim/record': ['std_srvs/srv/SetBool'],
-        '/dynsim/step': ['std_srvs/srv/Trigger'], '/dynsim/reset': ['std_srvs/srv/Trigger']}
+        **{f'/dynsim/{name}': ['std_srvs/srv/Trigger'] for name in (
+            'step', 'step_until', 'reset', 'save_state', 'load_state', 'rewind')}}
 
 
 @pytest.mark.parametrize('topic', [topic for topic in SPHERE if topic not in ('energy',
@@ -152,7 +155,7 @@ def test_only_what_a_scene_has(others, client, scene):
     client.wait(lambda: 'epoch' in offered(client, name))
     client.wait(client.node.create_client(SetBool, f'{name}/pause').service_is_ready)
     assert {topic: kind for topic, kind in offered(client, name).items()
-            if topic not in OTHERS_HAVE_THEM} == {**OTHERS[scene], 'epoch': EPOCH}
+            if topic not in OTHERS_HAVE_THEM} == {**OTHERS[scene], **OF_EVERY_SCENE}
 
 
 def test_a_particle_knows_no_torque(others, connect):
