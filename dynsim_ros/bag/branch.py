@@ -34,7 +34,7 @@ class Changes:
 
 @dataclass(frozen=True)
 class Branch:
-    """A Simulator where the branch begins, its commands, and what it says of where it comes from."""
+    """A Simulator where a branch begins, its commands, and what its bag says of its parent."""
 
     simulator: Simulator
     commands: list
@@ -92,8 +92,8 @@ def _commands(simulator, recorded, changes):
         return _possible(simulator.scene, recorded)
     for time_ns, command in changes.commands:
         if time_ns < simulator.time_ns:
-            raise SceneError(f'a command at {time_ns / SECOND:.9g} s lies before the branch, which '
-                             f'begins at {simulator.time:.9g} s: {command}')
+            raise SceneError(f'a command at {time_ns / SECOND:.9g} s lies before the branch, '
+                             f'which begins at {simulator.time:.9g} s: {command}')
     kept = _possible(simulator.scene, recorded) if changes.keep_commands else []
     return sorted([*kept, *changes.commands], key=lambda timed: timed[0])
 

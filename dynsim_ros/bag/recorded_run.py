@@ -16,7 +16,7 @@ from ..messages.scene_channels import scene_channels
 from ..messages.state_hash import decode_state_hash, STATE_HASH
 from ..scene import scene_quantities, SceneError
 from ..scene.yaml_file import parse_scene
-from ..simulation import SetValues, Settings, Simulator
+from ..simulation import Settings, SetValues, Simulator
 from ..simulation.checkpoint import CheckpointError, restored
 from ..simulation.settings import SECOND, SETTING_NAMES
 
@@ -35,8 +35,8 @@ class RecordedRun:
         self.bag = bag
         about = bag.metadata.get(RUN_METADATA)
         if about is None or SCENE_ATTACHMENT not in bag.attachments:
-            raise BagError(f'{bag.path} holds no run: it was not recorded by sim_node, simulate or '
-                           'rerun')
+            raise BagError(f'{bag.path} holds no run: it was not recorded by sim_node, simulate '
+                           'or rerun')
         try:
             self.simulator = self._first(about)
         except (CheckpointError, SceneError) as error:
@@ -81,8 +81,8 @@ class RecordedRun:
             simulator = Simulator(scene, Settings(**settings))
         else:
             raise CheckpointError(
-                f'it begins at {int(about["start_time_ns"]) / SECOND:.9g} s and has no checkpoint, '
-                f'as bags of version {about.get("version")} have none')
+                f'it begins at {int(about["start_time_ns"]) / SECOND:.9g} s without a checkpoint, '
+                f'which version {about.get("version")} did not write')
         simulator.epoch = int(about['epoch'])
         return simulator
 

@@ -44,5 +44,6 @@ class Stepping:
         simulator = self._run.simulator
         ticks = -((simulator.time_ns - round(seconds * SECOND)) // simulator.settings.tick_ns)
         if ticks <= 0 and self._run.paused:
-            return False, f'step_until: {seconds:.9g} s is not after the present, {self._run.now()}'
+            return False, (f'step_until: {seconds:.9g} s is not after the present, '
+                           f'{self._run.now()}')
         return self.by(ticks)

@@ -161,7 +161,7 @@ class Simulator:
 
     def memory(self):
         """
-        Return all that the run depends on from here on, beside scene and settings, as plain values.
+        Return all that the run from here on depends on, beside scene and settings.
 
         A dict of numbers, lists and such dicts: see docs/rerunning.md.
         """

@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run goes on from a checkpoint to the same bits, wherever it was taken and by whatever method."""
+"""A run goes on from a checkpoint to the same bits, wherever it was taken, by every method."""
 
 from contextlib import nullcontext
 import json
