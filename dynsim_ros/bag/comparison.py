@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 import math
 
+from .run_bag import as_sent
 from ..messages.cdr import decode
 from ..messages.state_hash import decode_state_hash, STATE_HASH
 from ..messages.tick_rows import TickRows
@@ -14,7 +15,9 @@ from ..simulation.state_hash import state_hash
 
 # Of the last part but one of a number's name in a message, or the last one.
 _UNITS = {'position': 'm', 'linear': 'm/s', 'angular': 'rad/s', 'force': 'N', 'torque': 'N m',
-          'data': 'J'}
+          'data': 'J', 'translation': 'm'}
+# The hash is compared by what it says.
+_NO_STATES = {'markers', STATE_HASH.topic}
 
 
 @dataclass(frozen=True)
@@ -46,13 +49,15 @@ class Comparison:
         self.states = self.hashes = 0
         self._rows = TickRows(channels, layout)
         self._numbers = {channel.topic: i for i, channel in enumerate(self._rows.channels)}
+        self._others = {channel.topic: channel for channel in channels
+                        if channel.row is None and channel.topic not in _NO_STATES}
         self._chosen: dict[tuple, tuple] = {}
 
     def difference(self, simulator, stamp_ns: int, messages) -> Difference | None:
         """
         Return the first difference between recorded messages of an instant and a simulator.
 
-        messages: [(topic relative to the node, CDR bytes)]; markers follow from the rest and are
+        messages: [(topic relative to the node, CDR bytes)]; markers, a drawing of the rest, are
         left out.
         """
         topics = tuple(topic for topic, _ in messages)
@@ -62,14 +67,20 @@ class Comparison:
         if wanted.numbers:
             self._rows.fill(simulator.instant(), stamp_ns, wanted)
         for (topic, data), number in zip(messages, numbers):
-            if number is not None and self._rows.message(number) != data:
-                return self._describe(simulator, topic, number, data)
             if topic == STATE_HASH.topic:
                 found = _difference_of_hash(simulator, data)
                 if found is not None:
                     return found
                 self.hashes += 1
-        self.states += bool(wanted.numbers)
+            elif number is not None and self._rows.message(number) != data:
+                return _describe(simulator, self._rows.channels[number], data,
+                                 self._rows.message(number))
+            elif topic in self._others:
+                channel = self._others[topic]
+                message = as_sent(channel.encode(simulator.snapshot(), stamp_ns))
+                if message != data:
+                    return _describe(simulator, channel, data, message)
+        self.states += bool(wanted.numbers) or not self._others.keys().isdisjoint(topics)
         return None
 
     def _choose(self, topics):
@@ -78,22 +89,22 @@ class Comparison:
         channels = [self._rows.channels[number] for number in numbers if number is not None]
         return self._rows.of(channels), numbers
 
-    def _describe(self, simulator, topic, number, data):
-        """Return the Difference of two messages that are not equal."""
-        type_name = self._rows.channels[number].type_name
-        try:
-            recorded = dict(_leaves(decode(type_name, data)))
-        except ValueError as error:
-            return Difference(simulator.tick, simulator.time_ns, topic, f'unreadable ({error})',
-                              'whole')
-        found = dict(_leaves(decode(type_name, self._rows.message(number))))
-        # Of equal numbers the texts may differ: there is a zero with a sign.
-        leaf = next((leaf for leaf in found if repr(found[leaf]) != repr(recorded.get(leaf))),
-                    None)
-        if leaf is None:
-            return Difference(simulator.tick, simulator.time_ns, topic, f'{len(data)} bytes',
-                              f'{len(self._rows.message(number))} bytes of the same numbers')
-        return _difference_of_number(simulator, f'{topic} {leaf}', recorded.get(leaf), found[leaf])
+
+def _describe(simulator, channel, data, message):
+    """Return the Difference of two messages of a Channel that are not equal, CDR bytes."""
+    topic = channel.topic
+    try:
+        recorded = dict(_leaves(decode(channel.type_name, data)))
+    except ValueError as error:
+        return Difference(simulator.tick, simulator.time_ns, topic, f'unreadable ({error})',
+                          'whole')
+    found = dict(_leaves(decode(channel.type_name, message)))
+    # Of equal numbers the texts may differ: there is a zero with a sign.
+    leaf = next((leaf for leaf in found if repr(found[leaf]) != repr(recorded.get(leaf))), None)
+    if leaf is None:
+        return Difference(simulator.tick, simulator.time_ns, topic, f'{len(data)} bytes',
+                          f'{len(message)} bytes of the same numbers')
+    return _difference_of_number(simulator, f'{topic} {leaf}', recorded.get(leaf), found[leaf])
 
 
 def _difference_of_hash(simulator, data):

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import json
 
 from .reader import Bag, BagError
-from .run_bag import CHECKPOINT_ATTACHMENT, PARAMETER_METADATA, RUN_METADATA, SCENE_ATTACHMENT
-from .run_bag import TOPIC_METADATA
+from .run_bag import CHECKPOINT_ATTACHMENT, full_name, PARAMETER_METADATA, RUN_METADATA
+from .run_bag import SCENE_ATTACHMENT, TOPIC_METADATA
 from ..messages.commands import command_of, command_topics, group_size, GROUP_TOPIC
 from ..messages.commands import PARAMETER_TOPIC
 from ..messages.scene_channels import scene_channels
@@ -46,11 +46,11 @@ class RecordedRun:
                            f'{type(error).__name__}: {error}') from None
         self.node: str = about.get('node', '/dynsim')
         scene = self.simulator.scene
-        self.channels = scene_channels(scene, self.simulator.layout)
+        self.channels = scene_channels(scene, self.simulator.layout, self.node)
         self._commands = {*command_topics(scene), GROUP_TOPIC}
         names = bag.metadata.get(TOPIC_METADATA, {})
         self._relative = {
-            names.get(topic, f'{self.node}/{topic}'): topic
+            names.get(topic, full_name(topic, self.node)): topic
             for topic in (*self._commands, *(channel.topic for channel in self.channels))}
         self._quantities = {*scene_quantities(scene), *SETTING_NAMES}
         self.begin_ns = self.simulator.time_ns

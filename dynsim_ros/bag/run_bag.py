@@ -47,7 +47,7 @@ class RunBag:
         """Create the file and write down how the run stands."""
         path = Path(path).expanduser()
         self._simulator, self._node, self._parent = simulator, node, parent or {}
-        resolve = resolve or (lambda topic: topic if topic[0] == '/' else f'{node}/{topic}')
+        resolve = resolve or (lambda topic: full_name(topic, node))
         self._topics = [(topic, resolve(topic), *what)
                         for topic, *what in _topics(simulator.scene, channels)]
         self._parameters = {} if parameters is None else parameters
@@ -67,6 +67,11 @@ class RunBag:
     def path(self):
         """Return the path of the bag, of its last file so far if it has several."""
         return self.recorder.path
+
+    @property
+    def paths(self):
+        """Return the paths of the bag's files, a list that the next one is added to."""
+        return self.recorder.paths
 
     @property
     def content(self):
@@ -103,7 +108,7 @@ class RunBag:
         if self._latched:
             messages, keep = [*self._latched.items(), *messages], True
             self._latched = None
-        messages = [(ids[topic], _as_sent(data)) for topic, data in messages
+        messages = [(ids[topic], as_sent(data)) for topic, data in messages
                     if topic != STATE_HASH.topic or self._is_new(data)]
         if messages:
             self.recorder.put(stamp_ns, messages, keep)
@@ -163,7 +168,12 @@ def _latched(simulator):
     return {channel.topic: channel.encode(snapshot, None) for channel in (EPOCH, STATE_HASH)}
 
 
-def _as_sent(data):
+def full_name(topic, node):
+    """Return the full name of a topic that is not remapped; node: full name of the node."""
+    return topic if topic[0] == '/' else f'{node}/{topic}'
+
+
+def as_sent(data):
     """Return CDR bytes as subscribers get them: DDS pads them to a multiple of four."""
     return data + bytes(-len(data) % 4)
 

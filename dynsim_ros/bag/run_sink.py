@@ -16,20 +16,22 @@ class RunSink:
     """
     Records the ticks and commands of an OfflineRun, all topics at every tick.
 
-    simulator: as it begins; origin_ns: added to simulated time in stamps; tell: called with the
-    simulated time [ns] at every tick; about: as RunBag takes it. Raises OSError or ValueError if
-    the file cannot be made.
+    simulator: as it begins; origin_ns: added to simulated time in stamps; node: full name of the
+    node in whose place it is; tell: called with the simulated time [ns] at every tick; about: as
+    RunBag takes it. Raises OSError or ValueError if the file cannot be made.
     """
 
     def __init__(self, path: str | os.PathLike, simulator, *, origin_ns: int = 0,
-                 tell: Callable[[int], None] = lambda time_ns: None, **about):
+                 node: str = '/dynsim', tell: Callable[[int], None] = lambda time_ns: None,
+                 **about):
         """Create the bag."""
-        channels = scene_channels(simulator.scene, simulator.layout)
+        channels = scene_channels(simulator.scene, simulator.layout, node)
         self._others = [channel for channel in channels if channel.row is None]
         self._rows = TickRows(channels, simulator.layout)
         self._all = self._rows.of()
         self._origin_ns, self._tell, self._simulator = origin_ns, tell, simulator
-        self._bag = RunBag(path, simulator, channels, self._rows, wait=True, **about)
+        self._bag = RunBag(path, simulator, channels, self._rows, wait=True, node=node,
+                           **about)
 
     @property
     def content(self) -> str:

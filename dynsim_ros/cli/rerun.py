@@ -10,7 +10,7 @@ import sys
 import time
 
 from .progress import Progress
-from .signals import Interrupted, Signals
+from .signals import Signals
 from .simulate import named_values, run_to_end
 
 _DESCRIPTION = """\
@@ -41,19 +41,12 @@ def main(args=None) -> int:
     signals = Signals()
     try:
         options = _parser().parse_args(sys.argv[1:] if args is None else args)
-        return _rerun(options, signals)
+        return signals.run(lambda: _rerun(options, signals), stopped=130)
     except (ValueError, ImportError) as error:
         print(f'error: {error}', file=sys.stderr)
     except OSError as error:
         print(f'error: {error.filename or "the bag"}: {error.strerror}; choose another --output',
               file=sys.stderr)
-    except Interrupted:
-        return 130
-    except RuntimeError:
-        # What becomes of an Interrupted that a callback from C, as a compiler has them, dropped.
-        if not signals.requested:
-            raise
-        return 130
     finally:
         if args is None:
             signals.ignore()

@@ -68,7 +68,7 @@ class States:
         try:
             if path.suffix == '.mcap' or path.is_dir():
                 simulator, begin_ns = _out_of_bag(path, round(seconds * SECOND))
-                history.append((path, begin_ns))
+                history.append(([path], begin_ns))
             else:
                 simulator = restored(path.read_bytes(), f'state.file: {path}')
             self._make_ready(simulator, path)
@@ -86,8 +86,10 @@ class States:
         except SceneError as error:
             return False, str(error)
         self._run.finish_bags()
-        path, _ = held.history[-1]
+        paths, _ = held.history[-1]
+        path = paths[0]
         try:
+            path = _file_with(paths, time_ns)
             simulator, _ = _out_of_bag(path, time_ns)
             self._make_ready(simulator, path)
         except ValueError as error:
@@ -138,7 +140,7 @@ class States:
         if not history:
             raise SceneError(f'{asked} is not recorded; go back to what is, or record from the '
                              'start (record.enable)')
-        is_recorded = run.bag is not None and run.bag.path == history[-1][0]
+        is_recorded = run.bag is not None and run.bag.paths is history[-1][0]
         held = _Held(history, run.paused, is_recorded)
         run.paused = True
         if is_recorded:
@@ -160,6 +162,15 @@ def _out_of_bag(path, time_ns):
     with open_bag(path) as bag:
         run = RecordedRun(bag)
         return simulator_at(run, time_ns), run.begin_ns
+
+
+def _file_with(paths, time_ns):
+    """Return which file of a bag, each a bag itself, in order of time, holds an instant."""
+    def begin_ns(path):
+        with open_bag(path) as bag:
+            return RecordedRun(bag).begin_ns
+
+    return next((path for path in reversed(paths[1:]) if begin_ns(path) <= time_ns), paths[0])
 
 
 def _is_state(path):
