@@ -47,7 +47,8 @@ def read(path):
         reader = make_reader(stream, validate_crcs=True)
         return (reader.get_summary(),
                 {item.name: item.metadata for item in reader.iter_metadata()},
-                [item.data.decode() for item in reader.iter_attachments()],
+                [item.data.decode() for item in reader.iter_attachments()
+                 if item.name == 'scene.yaml'],
                 [(channel.topic, message.log_time, message.data)
                  for _, channel, message in reader.iter_messages()])
 
@@ -64,7 +65,7 @@ def test_each_part_is_a_whole_bag_and_nothing_is_missing_between_them(tmp_path):
         assert metadata['part'] == {'number': str(number + 1)}
         assert metadata['dynsim_ros']['start_tick'] == str(100 * number)
         assert summary.statistics.message_count == len(messages)
-        assert len(summary.channels) == 15
+        assert len(summary.channels) == 17
         assert messages[0][:2] == ('/dynsim/epoch', 100 * number * TICK)
         times = [stamp for _, stamp, _ in messages]
         assert (times[0], times[-1]) == (100 * number * TICK,
