@@ -26,8 +26,8 @@ class Run:
     always up to date; node: the node, for its names and its log; origin_ns: added to simulated
     time in stamps; waiting: True until it is known, nothing is published before. work: how long
     the run's thread has been at steps, publishing and recording, by these names [ns]; lost:
-    messages of bags that have ended which are not in them; history: [(paths of its files, simulated
-    time at its beginning [ns])] of the bags that hold how the run came to where it is.
+    messages of bags that have ended which are not in them; history: [(paths of its files,
+    simulated time at its beginning [ns])] of the bags that hold how the run came to where it is.
     """
 
     def __init__(self, simulator: Simulator, topics, clock, options, node):

@@ -79,8 +79,8 @@ def test_a_bag_that_is_cut_off_is_compared_as_far_as_it_goes(bag, tmp_path, caps
 
 def test_a_branch_is_a_bag_that_names_its_parent_and_is_itself_a_run(bag, tmp_path, capsys):
     path = tmp_path / 'stiffer.mcap'
-    (line,) = said(capsys, 0, bag, '--from', '0.2', '--set', 'spring.stiffness=200', 'gravity=1.62',
-                   '--until', '1.2', '-o', path)
+    (line,) = said(capsys, 0, bag, '--from', '0.2', '--until', '1.2', '-o', path, '--set',
+                   'spring.stiffness=200', 'gravity=1.62')
     assert line.startswith('branch of run.mcap at tick 20, 0.2 s, until 1.2 s: ')
     assert line.endswith(f' messages in {path}')
     about = metadata(path)
