@@ -29,7 +29,8 @@ def main(seed, seconds):
             client.publish('hand/command', point)
         elif kind == 1:
             wrench = WrenchStamped()
-            wrench.wrench.force.y, wrench.wrench.torque.x = choose.gauss(0, 2), choose.gauss(0, 0.01)
+            wrench.wrench.force.y = choose.gauss(0.0, 2.0)
+            wrench.wrench.torque.x = choose.gauss(0.0, 0.01)
             client.publish('sphere/wrench_command', wrench)
         else:
             values = {'spring.stiffness': choose.uniform(50.0, 200.0),

@@ -35,6 +35,7 @@ def record(path, scene='sphere_on_spring', ticks=100, commands=(), **settings):
     """Record a run of so many ticks of 100 Hz; return the Simulator at its end."""
     scene = load_scene(scene) if isinstance(scene, str) else scene
     simulator = Simulator(scene, **settings)
+    simulator.prepare()
     sink = RunSink(path, simulator)
     OfflineRun(simulator, commands, sink).run(ticks * TICK * 1e-9)
     sink.close()

@@ -36,8 +36,11 @@ def recall(steps, memory, begun):
 
 @remember.register
 def _(steps: FixedSteps):
-    return {'origin': steps._origin, 'grid': steps._grid, 'state': steps._state.tolist(),
-            'removed': float(steps.removed), 'steps': int(steps.steps)}
+    kept = {'removed': float(steps.removed), 'steps': int(steps.steps)}
+    if hasattr(steps, '_grid'):
+        # It is there as soon as a motion has begun.
+        kept |= {'origin': steps._origin, 'grid': steps._grid, 'state': steps._state.tolist()}
+    return kept
 
 
 @recall.register
