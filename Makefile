@@ -25,7 +25,7 @@ PARAMETERS = -p record.enable:=true \
 
 .DELETE_ON_ERROR:
 .PHONY: help run test bench bench-quick bench-stability bench-skipping bench-instructions bench-node \
-	bench-bag fuzz-bag soak lint clean stale
+	bench-bag fuzz-bag rerun-grid soak lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -42,6 +42,7 @@ help:
 	@echo 'make bench-node   what the node costs beside a naive one (ten minutes; ARGS=--quick: two); to benchmarks/'
 	@echo 'make bench-bag    a million messages written, read, recovered, and kill -9 in a loop; to benchmarks/'
 	@echo 'make fuzz-bag     a thousand bags damaged at random and recovered, of each compression'
+	@echo 'make rerun-grid   every scene, method and kind of commands lived again, and a live run of a minute'
 	@echo 'make soak    ten minutes of the node at 1 kHz with two subscribers and 100 commands a second'
 	@echo 'make lint    check the style'
 	@echo 'make clean   remove .venv, caches and build output; recorded runs stay'
@@ -79,6 +80,10 @@ bench-bag: $(VENV)/ready_for_tests
 
 fuzz-bag: $(VENV)/ready_for_tests
 	@DYNSIM_FUZZ_ROUNDS=1000 exec tools/in_venv python -m pytest test/bag/recovery/test_fuzzed.py --timeout 1200 $(ARGS)
+
+rerun-grid: $(VENV)/ready_for_tests
+	@DYNSIM_RERUN_GRID=all exec tools/in_venv python -m pytest --timeout 3600 test/bag/test_rerun_grid.py \
+		test/ros/test_rerun_live.py $(ARGS)
 
 soak: $(VENV)/ready
 	@exec tools/in_venv python benchmarks/soak.py $(ARGS)
