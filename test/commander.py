@@ -44,7 +44,9 @@ def main(seed, seconds):
         count += 1
         # now and then several between two ticks
         if choose.random() < 0.7:
-            client.more('sphere/pose')
+            before, limit = len(client.heard['sphere/pose']), time.monotonic() + 0.2
+            client.wait(lambda before=before, limit=limit: time.monotonic() > limit
+                        or len(client.heard['sphere/pose']) > before)
     print(count)
     client.close()
 

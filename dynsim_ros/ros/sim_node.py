@@ -123,7 +123,8 @@ class SimNode(Node):
         if self.parameters.own['publish_clock']:
             self._clock_publisher.begin()
         self._recovering = Recovering(self.parameters.own['record.directory'], self.get_logger())
-        if self.parameters.own['record.enable']:
+        # Services are offered already: somebody may have been quicker.
+        if self.parameters.own['record.enable'] and self.run.bag is None:
             self.run.start_recording()
         self._begin_epoch()
         self.diagnostics.begin()

@@ -113,8 +113,10 @@ def test_every_topic_of_a_state_is_compared(tmp_path):
         data = bytearray(stamps[stamp])
         place = len(data) - 4 if changed == HASH else len(data) - 8
         data[place] ^= 1
-        path = rewritten(bag, tmp_path / 'run.mcap', lambda topic, at, content: bytes(data)
-                         if (topic, at) == (changed, stamp) else content)
+        place, other = (changed, stamp), bytes(data)
+        path = rewritten(
+            bag, tmp_path / 'run.mcap', lambda topic, at, content, place=place, other=other:
+            other if (topic, at) == place else content)
         difference = outcome(path).difference
         assert difference is not None and difference.time_ns == stamp, changed
 

@@ -27,8 +27,8 @@ def test_every_state_is_the_same_bits(start, connect, capsys):
     commanders = [command(seed) for seed in (1, 2)]
     client = connect(node)
     # a bag that begins while all is going on
-    for commander in commanders:
-        client.wait(lambda: client.node.count_publishers('/dynsim/hand/command') > 0)
+    client.wait(lambda: 'recording to' in node.output
+                and client.node.count_publishers('/dynsim/hand/command'))
     client.record(False)
     client.record(True)
     counts = [int(commander.communicate()[0]) for commander in commanders]
