@@ -24,15 +24,19 @@ PARAMETERS = -p record.enable:=true \
 	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
 
 .DELETE_ON_ERROR:
-.PHONY: help run test bench bench-quick bench-stability bench-skipping bench-instructions bench-node \
-	bench-bag fuzz-bag rerun-grid soak lint clean stale
+.PHONY: help run view live test test-browser bench bench-quick bench-stability bench-skipping \
+	bench-instructions bench-node bench-bag fuzz-bag rerun-grid soak lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
 	@echo '               DURATION=10                 stop after 10 s of simulated time'
 	@echo '               SCENE=spinning_box          a scene of scenes/, or the path of a YAML file'
 	@echo "               ARGS='-p rate:=200.0'       more ROS arguments for the node"
+	@echo 'make view    show the newest recorded run in the browser; FILE=runs/some.mcap: that one'
+	@echo 'make live    show and steer in the browser what `make run` simulates in another terminal'
+	@echo "               ARGS='--node /lab/dynsim'   more options; \`tools/in_venv view --help\` has all"
 	@echo "make test    run the test suite            ARGS='-k bag -x' hands options to pytest"
+	@echo 'make test-browser   only the tests that open the viewer in a Chromium, which has to be there'
 	@echo 'make bench   measure run time against error (half an hour); tables and plot go to benchmarks/'
 	@echo '               ARGS="--scenes S2 --peers heyoka --output /tmp"'
 	@echo 'make bench-quick   the main scenes against the fastest engines, in less than three minutes'
@@ -53,8 +57,18 @@ help:
 run: $(VENV)/ready
 	@exec tools/in_venv sim_node --status --ros-args $(PARAMETERS) $(ARGS)
 
+view: $(VENV)/ready
+	@exec tools/in_venv view $(if $(FILE),'$(FILE)',--newest) $(ARGS)
+
+live: $(VENV)/ready
+	@exec tools/in_venv view --live $(ARGS)
+
 test: $(VENV)/ready_for_tests
 	@exec tools/in_venv python -m pytest -n 2 --dist loadfile $(ARGS)
+
+test-browser: $(VENV)/ready_for_tests
+	@tools/in_venv python test/chromium.py
+	@exec tools/in_venv python -m pytest test/browser $(ARGS)
 
 bench: $(VENV)/ready_for_benchmarks
 	@tools/in_venv python benchmarks/work_precision.py $(ARGS)

@@ -58,6 +58,7 @@ setup(
         ],
         'plot': [MATPLOTLIB],
         'bench': [MATPLOTLIB, 'scipy>=1.9,<2'],
+        'view': ['viser>=1.1,<2'],
         # What the benchmarks compare with: tools/set_up installs each of them if it can be had.
         'peers': [
             'drake>=1.20,<2',
@@ -79,6 +80,7 @@ setup(
             'mcap-ros2-support>=0.5,<1',
             'mpmath>=1.2,<2',
             'pandas>=2,<4',
+            'playwright>=1.40,<2',
             'pytest>=7.4,<9',
             'pytest-timeout>=2.1,<3',
             'pytest-xdist>=3,<4',
@@ -97,6 +99,7 @@ setup(
             f'rerun = {NAME}.cli.rerun:main',
             f'sim_node = {NAME}.cli.sim_node:main',
             f'simulate = {NAME}.cli.simulate:main',
+            f'view = {NAME}.cli.view:main',
         ],
     },
 )

@@ -11,6 +11,7 @@ from pathlib import Path
 import shutil
 import tempfile
 
+from chromium import chromium, MISSING
 from dds_domain import claim_domain
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,7 +29,10 @@ os.environ['PYTHONPATH'] = os.pathsep.join(
 
 
 def pytest_report_header():
-    return f'DDS domain {_DOMAIN}, discovery on this machine only'
+    lines = [f'DDS domain {_DOMAIN}, discovery on this machine only']
+    if chromium() is None:
+        lines.append(f'the tests in test/browser are left out: {MISSING}')
+    return lines
 
 
 def pytest_unconfigure():

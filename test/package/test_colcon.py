@@ -45,7 +45,7 @@ def test_shares_are_installed_whole(workspace):
         assert {path.name for path in installed.iterdir()} == expected != set()
 
 
-@pytest.mark.parametrize('name', ['sim_node', 'simulate', 'replay'])
+@pytest.mark.parametrize('name', ['sim_node', 'simulate', 'replay', 'view'])
 def test_executables_are_where_ros2_run_looks(workspace, name):
     executable = workspace[1] / 'lib' / 'dynsim_ros' / name
     assert os.access(executable, os.X_OK)

@@ -92,7 +92,7 @@ def test_sourced_ros_that_python_cannot_import_is_told(machine):
 def test_help_is_the_default_and_sets_nothing_up(machine):
     done = machine()
     assert done.returncode == 0
-    for target in ('run', 'test', 'lint', 'clean'):
+    for target in ('run', 'view', 'live', 'test', 'test-browser', 'lint', 'clean'):
         assert f'make {target} ' in done.stdout
 
 

@@ -45,7 +45,7 @@ def test_ament_marker_is_installed(prefix):
     assert (index / 'dynsim_ros').is_file()
 
 
-@pytest.mark.parametrize('name', ['export', 'plot', 'replay', 'sim_node', 'simulate'])
+@pytest.mark.parametrize('name', ['export', 'plot', 'replay', 'sim_node', 'simulate', 'view'])
 def test_executables_are_in_bin_and_start(prefix, environment, name):
     help_text = output_of([prefix / 'bin' / name, '--help'], cwd='/', env=environment)
     assert help_text.startswith(f'usage: {name}')

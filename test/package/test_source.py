@@ -8,7 +8,7 @@ import pytest
 from tree import imported_modules, python_files, ROOT, source_files
 
 # each room imports from itself and from those after it
-ROOMS = ['cli', 'ros', 'bag', 'messages', 'simulation', 'integrators', 'physics', 'scene']
+ROOMS = ['cli', 'view', 'ros', 'bag', 'messages', 'simulation', 'integrators', 'physics', 'scene']
 HEADER = ('# Copyright 2026 the dynsim_ros authors\n'
           '# SPDX-License-Identifier: Apache-2.0\n')
 

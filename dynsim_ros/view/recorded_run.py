@@ -1,0 +1,87 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded run, read from its bag."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .server import ViewError
+from .table import NUMBERS, Table
+from ..bag import load
+from ..bag.load_columns import columns
+from ..bag.run_bag import SCENE_ATTACHMENT
+from ..scene import parse_scene, Scene, SceneError
+
+# What the topics of a run end with: others, such as commands, are of the same types.
+_ENDINGS = ('/pose', '/twist', '/wrench/spring', '/wrench/damper', '/wrench/air',
+            '/wrench/gravity', '/wrench/net', '/energy')
+
+
+@dataclass(frozen=True)
+class RecordedRun:
+    """
+    A run.
+
+    tables: {topic relative to the node: Table}; problem: None, or one line that says what is
+    wrong with the bag.
+    """
+
+    scene: Scene
+    tables: dict
+    problem: str | None
+
+    @property
+    def start(self):
+        """Return when it begins [s]."""
+        return min(table.time[0] for table in self.tables.values())
+
+    @property
+    def end(self):
+        """Return when it ends [s]."""
+        return max(table.time[-1] for table in self.tables.values())
+
+
+def read_run(path, scene=None):
+    """
+    Return the RecordedRun in a bag; scene: to be used instead of the one in it, or None.
+
+    Raises BagError or ViewError, in one line, where there is none.
+    """
+    bag = load(path)
+    scene = scene or _scene(bag)
+    node = bag.info.get('node') or _node(bag, scene)
+    tables = {topic.removeprefix(f'{node}/'): Table(bag.time(topic), _numbers(bag[topic]))
+              for topic in bag if topic.startswith(f'{node}/') and topic.endswith(_ENDINGS)
+              and bag.channels[topic].type_name in NUMBERS}
+    missing = [body.name for body in scene.bodies if f'{body.name}/pose' not in tables]
+    if missing:
+        raise ViewError(f'{path}: holds no pose of {", ".join(missing)} below {node or "a node"}; '
+                        'record ~/<body>/pose, too')
+    return RecordedRun(scene, tables, bag.problem)
+
+
+def _numbers(values):
+    """Return the numbers of messages, (n, k), without their headers."""
+    return np.column_stack([column for name, column in columns(values).items()
+                            if not name.startswith('header.')]).astype(float)
+
+
+def _scene(bag):
+    """Return the scene that is attached to a bag."""
+    if SCENE_ATTACHMENT not in bag.attachments:
+        raise ViewError(f'{bag.path}: holds no {SCENE_ATTACHMENT}, as runs of this package do; '
+                        'give the scene of the run with --scene')
+    _, content = bag.attachments[SCENE_ATTACHMENT]
+    try:
+        return parse_scene(content.decode('utf-8'))
+    except (SceneError, UnicodeDecodeError) as error:
+        raise ViewError(f'{bag.path}: its {SCENE_ATTACHMENT} is no scene: {error}') from None
+
+
+def _node(bag, scene):
+    """Return the name of the node whose topics a bag of another recorder holds, '' for none."""
+    ending = f'/{scene.bodies[0].name}/pose'
+    return next((name.removesuffix(ending) for name in bag.channels if name.endswith(ending)), '')

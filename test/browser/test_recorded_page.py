@@ -1,0 +1,130 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded run in a browser, at the size of a desk and of a phone."""
+
+import numpy as np
+import pytest
+from bag_numbers import row
+from seen import body, DESKTOP, PHONE
+
+
+@pytest.fixture(scope='module')
+def process(view, bag):
+    return view(bag)
+
+
+@pytest.fixture(scope='module', params=[DESKTOP, PHONE], ids=['desktop', 'phone'])
+def page(request, open_page, process):
+    return open_page(process.url, request.param)
+
+
+def is_paused(page):
+    play = page.get_by_role('button', name='Play')
+    page.get_by_role('button', name='Pause').or_(play).wait_for()
+    return play.is_visible()
+
+
+def shown_time(page):
+    return float(page.get_by_role('slider').first.get_attribute('aria-valuenow'))
+
+
+def legend(page):
+    """Return {label: (value, half of what its last digit is worth)} of the first plot."""
+    found = {}
+    for line in page.locator('.u-legend').first.locator('tr').all():
+        label, value = line.locator('.u-label').inner_text(), line.locator('.u-value').inner_text()
+        found[label] = float(value), 0.5 * 10.0 ** -len(value.partition('.')[2]) + 1e-9
+    return found
+
+
+def pause(page):
+    if not is_paused(page):
+        page.keyboard.press('Space')
+        page.get_by_role('button', name='Play').wait_for()
+
+
+def wait_for_instant(page, bag, time):
+    """Wait for the energies of a time [s]."""
+    energy = row(bag, 'energy', time)
+    page.get_by_text(f'energy {energy[3]:.6g} J, drift {energy[8]:.2g} J').wait_for()
+
+
+def test_everything_can_be_reached_by_its_name(page):
+    for name in ('start', '- tick', '+ tick'):
+        assert page.get_by_role('button', name=name).is_visible()
+    for role, name in (('combobox', 'speed'), ('checkbox', 'loop')):
+        assert page.get_by_role(role, name=name).is_visible()
+    folder = page.get_by_text('3-D view')
+    folder.click()
+    page.get_by_role('checkbox', name='force: spring').wait_for()
+    for label in ('time [s]', 'section [s]', 'trail [s]', 'follow'):
+        assert page.get_by_text(label, exact=True).first.is_visible()
+    folder.click()
+
+
+def test_plays_and_obeys_the_keyboard(page):
+    changed = ('from => document.querySelector("[role=slider]").getAttribute("aria-valuenow")'
+               ' != from')
+    if is_paused(page):
+        page.keyboard.press('Space')
+        page.get_by_role('button', name='Pause').wait_for()
+    page.wait_for_function(changed, arg=shown_time(page))
+    page.keyboard.press('Space')
+    page.get_by_role('button', name='Play').wait_for()
+    before = shown_time(page)
+    page.keyboard.press('ArrowRight')
+    page.wait_for_function(changed, arg=before)
+    assert shown_time(page) - before == pytest.approx(0.005, abs=2e-4)
+    page.keyboard.press('Home')
+    page.wait_for_function(changed, arg=shown_time(page))
+    assert shown_time(page) == 0.0
+
+
+def test_scrubbing_moves_the_body(page, bag):
+    pause(page)
+    places = []
+    for share in (0.2, 0.8):
+        track = page.locator('.mantine-Slider-track').first.bounding_box()
+        thumb = page.get_by_role('slider').first.bounding_box()
+        page.mouse.move(thumb['x'] + 0.5 * thumb['width'], thumb['y'] + 0.5 * thumb['height'])
+        page.mouse.down()
+        page.mouse.move(track['x'] + share * track['width'], thumb['y'] + 5, steps=4)
+        page.mouse.up()
+        time = shown_time(page)
+        assert abs(time - 2.0 * share) < 0.2
+        wait_for_instant(page, bag, time)
+        places.append(wait_for_picture(page))
+    assert np.linalg.norm(places[0] - places[1]) > 5.0
+
+
+def wait_for_picture(page):
+    """Wait until the body stays where it is in the picture; return that place [pixels]."""
+    place = None
+    for _ in range(100):
+        before, place = place, body(page)
+        if before is not None and place is not None and np.abs(before - place).max() < 1.0:
+            return place
+    raise AssertionError('the picture does not come to rest')
+
+
+def test_values_under_the_mouse_are_those_of_the_bag(page, bag):
+    pause(page)
+    box = page.get_by_role('textbox').first
+    box.fill('1.0')
+    box.press('Enter')
+    wait_for_instant(page, bag, 1.0)
+    if page.viewport_size == PHONE:
+        page.get_by_text('plots').locator('visible=true').last.click()
+    page.get_by_role('combobox', name='plots').wait_for()
+    over = page.locator('.u-over').first
+    over.wait_for()
+    box = over.bounding_box()
+    over.hover(position={'x': 0.25 * box['width'], 'y': 0.5 * box['height']})
+    page.wait_for_function('() => document.querySelector(".u-value").innerText != "--"')
+    shown = legend(page)
+    time, _ = shown.pop('t [s]')
+    assert abs(time - 0.5) < 0.02
+    # rows are 0.005 s apart, and their times are shown rounded
+    rows = [row(bag, 'sphere/pose', time + shift)[:3] for shift in (-0.005, 0.0, 0.005)]
+    assert any(all(abs(shown[axis][0] - value) <= shown[axis][1]
+                   for axis, value in zip('xyz', values)) for values in rows), (shown, rows)
