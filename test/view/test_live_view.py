@@ -122,7 +122,7 @@ def test_pulled_body_feels_a_force(page, client):
     grab(page, 'start', end)
     client.wait(lambda: forces(client.more('sphere/wrench/net'))[-1, 0] > 20.0)
     client.listen({'sphere/wrench_command': WRENCH})
-    assert forces(client.more('sphere/wrench_command'))[-1, 0] > 20.0
+    client.wait(lambda: forces(client.more('sphere/wrench_command'))[-1, 0] > 10.0)
     grab(page, 'end', end)
     client.wait(lambda: not forces(client.more('sphere/wrench_command'))[-1].any())
 
@@ -186,11 +186,15 @@ def test_browser_that_does_not_keep_up_holds_nobody_up(page, client, process):
         client.pause(False)
         return seconds
 
+    def pace():
+        """Return simulated seconds a second while this page takes in so many messages."""
+        started, begun, count = time.monotonic(), now(), page.messages
+        page.wait(lambda: page.messages > count + 600)
+        return (now() - begun) / (time.monotonic() - started)
+
+    usual = pace()
     lazy = PageClient(process.url, receive_buffer=4096)  # it reads nothing from here on
-    started, begun, count = time.monotonic(), now(), page.messages
-    page.wait(lambda: page.messages > count + 600)
-    elapsed = time.monotonic() - started
-    assert now() - begun > 0.5 * elapsed - 0.5
+    assert pace() > 0.5 * usual
     lazy.close()
 
 
