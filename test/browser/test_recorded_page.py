@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recorded run in a browser, at the size of a desk and of a phone."""
 
+from bag_numbers import row
 import numpy as np
 import pytest
-from bag_numbers import row
 from seen import body, DESKTOP, PHONE
 
 

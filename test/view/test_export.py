@@ -5,11 +5,11 @@
 import base64
 import re
 
+from bag_numbers import row
 from dynsim_ros.cli.view import main
 import msgspec
 import numpy as np
 import pytest
-from bag_numbers import row
 import zstandard
 
 

@@ -7,11 +7,11 @@ import socket
 from urllib.parse import urlsplit
 from urllib.request import urlopen
 
+from bag_numbers import row, rows
 from dynsim_ros.scene import load_scene
 import numpy as np
 from page_client import PageClient
 import pytest
-from bag_numbers import row, rows
 from scipy.spatial.transform import Rotation
 
 SCENE = load_scene('sphere_on_spring')
