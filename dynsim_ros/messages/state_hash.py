@@ -24,7 +24,9 @@ class HashedState(NamedTuple):
 
 def encode_state_hash(snapshot, _stamp_ns):
     """Return the message for a Snapshot."""
-    return encode(_TYPE, {'data': f'{snapshot.tick} {snapshot.time_ns} {state_hash(snapshot)}'})
+    # As long as any other, so that the messages of a bag make an array.
+    return encode(_TYPE, {
+        'data': f'{snapshot.tick:>19} {snapshot.time_ns:>19} {state_hash(snapshot)}'})
 
 
 def decode_state_hash(data: bytes) -> HashedState:

@@ -24,7 +24,7 @@ COMMANDS = """
 - {time: 0.3, anchor: hand, position: [0.1, 0, 2]}
 - {time: 0.3, set: {down: [0, 0, -1], integrator: rk4}}
 """
-OF_VARYING_SIZE = {'/dynsim/parameter_command', '/dynsim/state_hash'}
+OF_VARYING_SIZE = {'/dynsim/parameter_command'}
 MADE = [(100_000_000, MoveAnchor('hand', (0.2, 0.0, 2.0))),
         (200_000_000, PushBody('sphere', (0.0, 5.0, 0.0), (0.0, 0.0, 0.1))),
         (300_000_000, SetValues({'spring.stiffness': 200.0, 'gravity': 1.62})),

@@ -51,7 +51,8 @@ def test_a_file_for_each_topic_with_messages(folder):
                                                          'net')}
     assert {path.name for path in folder.iterdir()} == {
         'sphere_pose.csv', 'sphere_twist.csv', *wrenches, 'hand_pose.csv', 'energy.csv',
-        'epoch.csv', 'hand_command.csv', 'tf.csv', 'markers.jsonl', 'parameter_command.jsonl',
+        'epoch.csv', 'hand_command.csv', 'tf.csv', 'state_hash.csv',
+        'parameter_group.csv', 'markers.jsonl', 'parameter_command.jsonl',
         'scene.yaml', 'parameters.yaml'}
 
 

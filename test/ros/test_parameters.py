@@ -21,7 +21,9 @@ INITIAL = {'sphere.position': 'm', 'sphere.velocity': 'm/s', 'sphere.orientation
 SETTINGS = {'rate': 'Hz', 'step': 's', 'tolerance': '', 'wrench_timeout': 's'}
 OTHERS = {'integrator', 'anchor_interpolation', 'scene', 'real_time_factor', 'publish_clock',
           'duration', 'publish_rate.state', 'publish_rate.wrench', 'publish_rate.energy',
-          'publish_wrenches', 'record.enable', 'record.directory', 'record.compression',
+          'publish_wrenches', 'publish_tf', 'step_count', 'step_until', 'state.file', 'state.time',
+          'record.enable', 'record.directory', 'record.compression', 'record.max_size',
+          'record.max_duration', 'record.sync',
           'real_time.spin', 'real_time.priority', 'real_time.cpu', 'real_time.lock_memory',
           'use_sim_time'}
 
