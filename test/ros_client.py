@@ -74,7 +74,7 @@ class Client:
         """Return the full name of a topic or service."""
         return name if name.startswith('/') else f'{self._target}/{name}'
 
-    def wait(self, condition, timeout=30.0):
+    def wait(self, condition, timeout=60.0):
         """Serve until condition() returns something true; return it."""
         limit = time.monotonic() + timeout
         while not (result := condition()):
