@@ -10,7 +10,7 @@ from pathlib import Path
 import sys
 
 from .bag_options import add_selection, load_selection
-from .signals import Interrupted, Signals
+from .offline_program import run_offline
 
 _DESCRIPTION = """\
 Write the messages of a bag to files for other programs.
@@ -28,24 +28,11 @@ examples:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Export a bag; return 0, 2 with an error on stderr, or 130 if stopped."""
-    signals = Signals()
-    try:
-        _export(_parser().parse_args(sys.argv[1:] if args is None else args))
-        return 0
-    except (ValueError, ImportError) as error:
-        print(f'error: {error}', file=sys.stderr)
-    except OSError as error:
-        print(f'error: {error.filename or "the output"}: {error.strerror}; choose another '
-              '--output', file=sys.stderr)
-    except Interrupted:
-        return 130
-    finally:
-        if args is None:
-            signals.ignore()
-    return 2
+    return run_offline(_export, args, 'the output')
 
 
-def _export(options: argparse.Namespace):
+def _export(args: Sequence[str], _) -> int:
+    options = _parser().parse_args(args)
     # Imported here so that --help is quick.
     from ..bag.export_files import write_arrays, write_folder
 
@@ -60,6 +47,7 @@ def _export(options: argparse.Namespace):
     names = write_arrays(run, output) if as_arrays else write_folder(run, output)
     if not options.quiet:
         print(f'{output}: ' + ', '.join(names))
+    return 0
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -10,7 +10,7 @@ from pathlib import Path
 import sys
 
 from .bag_options import add_selection, load_selection
-from .signals import Interrupted, Signals
+from .offline_program import run_offline
 
 _DESCRIPTION = """\
 Draw what a bag has of positions, orientations, velocities, wrenches and energies against time.
@@ -29,24 +29,11 @@ examples:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Plot a bag; return 0, 2 with an error on stderr, or 130 if stopped."""
-    signals = Signals()
-    try:
-        _plot(_parser().parse_args(sys.argv[1:] if args is None else args))
-        return 0
-    except (ValueError, ImportError) as error:
-        print(f'error: {error}', file=sys.stderr)
-    except OSError as error:
-        print(f'error: {error.filename or "the figure"}: {error.strerror}; choose another '
-              '--output', file=sys.stderr)
-    except Interrupted:
-        return 130
-    finally:
-        if args is None:
-            signals.ignore()
-    return 2
+    return run_offline(_plot, args, 'the figure')
 
 
-def _plot(options: argparse.Namespace):
+def _plot(args: Sequence[str], _) -> int:
+    options = _parser().parse_args(args)
     try:
         # Imported here so that --help is quick, and works without it.
         from .plot_figure import draw, ENDINGS
@@ -65,6 +52,7 @@ def _plot(options: argparse.Namespace):
     draw(drawn, label, output, _names(runs) if options.compare else None)
     if not options.quiet:
         print(output)
+    return 0
 
 
 def _drawn(runs, all_anchors: bool):

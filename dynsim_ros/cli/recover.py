@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from .signals import Interrupted, Signals
+from .offline_program import run_offline
 from .terminal import write
 
 _DESCRIPTION = """\
@@ -27,24 +27,14 @@ examples:
 
 def main(args=None) -> int:
     """Recover; return 0, or 2 with an error on stderr for each file that could not be."""
-    signals = Signals()
-    try:
-        parser = _parser()
-        options = parser.parse_args(args)
-        if options.output and len(options.files) > 1:
-            parser.error('--output is for one FILE')
-        return _recover(options)
-    except Interrupted:
-        return 130
-    except ImportError as error:
-        print(f'error: {error}', file=sys.stderr)
-    finally:
-        if args is None:
-            signals.ignore()
-    return 2
+    return run_offline(_recover, args, 'the output')
 
 
-def _recover(options) -> int:
+def _recover(args, _) -> int:
+    parser = _parser()
+    options = parser.parse_args(args)
+    if options.output and len(options.files) > 1:
+        parser.error('--output is for one FILE')
     # Imported here so that --help is quick.
     from ..bag.recovery.recover import recover
 

@@ -9,8 +9,8 @@ import math
 import sys
 import time
 
+from .offline_program import run_offline
 from .progress import Progress
-from .signals import Signals
 from .simulate import named_values, run_to_end
 
 _DESCRIPTION = """\
@@ -38,22 +38,11 @@ def main(args=None) -> int:
 
     A branch that is stopped or diverges leaves a finished bag.
     """
-    signals = Signals()
-    try:
-        options = _parser().parse_args(sys.argv[1:] if args is None else args)
-        return signals.run(lambda: _rerun(options, signals), stopped=130)
-    except (ValueError, ImportError) as error:
-        print(f'error: {error}', file=sys.stderr)
-    except OSError as error:
-        print(f'error: {error.filename or "the bag"}: {error.strerror}; choose another --output',
-              file=sys.stderr)
-    finally:
-        if args is None:
-            signals.ignore()
-    return 2
+    return run_offline(_rerun, args, 'the bag')
 
 
-def _rerun(options, signals) -> int:
+def _rerun(args, signals) -> int:
+    options = _parser().parse_args(args)
     # Imported here so that --help is quick.
     from ..bag.reader import open_bag
     from ..bag.recorded_run import RecordedRun

@@ -8,8 +8,8 @@ import argparse
 import sys
 import time
 
+from .offline_program import run_offline
 from .progress import Progress
-from .signals import Signals
 
 _DESCRIPTION = """\
 Simulate a scene into a bag, without any ROS process and as fast as the machine can.
@@ -42,19 +42,7 @@ def main(args=None) -> int:
 
     The bag is finished in any case.
     """
-    signals = Signals()
-    try:
-        return signals.run(
-            lambda: _simulate(sys.argv[1:] if args is None else args, signals), stopped=130)
-    except (ValueError, ImportError) as error:
-        print(f'error: {error}', file=sys.stderr)
-    except OSError as error:
-        print(f'error: {error.filename or "the bag"}: {error.strerror}; choose another --output',
-              file=sys.stderr)
-    finally:
-        if args is None:
-            signals.ignore()
-    return 2
+    return run_offline(_simulate, args, 'the bag')
 
 
 def _simulate(args, signals) -> int:

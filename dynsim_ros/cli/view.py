@@ -102,9 +102,12 @@ def _show_live(options, ros_args, signals) -> int:
     simulation = child('sim_node', [*(['--quiet'] if options.quiet else []), *ros_args]) \
         if options.simulate else nullcontext()
     with simulation as process, ros_context('view', [] if process else ros_args):
-        has_ended = (lambda: False) if process is None else (
-            lambda: process.poll() is not None)
-        stopped = lambda: signals.requested or has_ended()  # noqa: E731
+        def has_ended():
+            return process is not None and process.poll() is not None
+
+        def stopped():
+            return signals.requested or has_ended()
+
         with new_remote(options.node) as (remote, node), spinning(node) as serve:
             patience = _PATIENCE_WITH_START if process else _PATIENCE
             remote.find(serve, patience, has_ended)
@@ -114,7 +117,7 @@ def _show_live(options, ros_args, signals) -> int:
                 signals.hold()
                 _tell(server, options)
                 page.run(stopped, page.frame, serve)
-        return process.returncode if process and has_ended() else 0
+        return process.returncode if has_ended() else 0
 
 
 def _tell(server, options, problem=None):
