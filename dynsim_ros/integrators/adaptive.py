@@ -115,16 +115,16 @@ def attempt(gragg_plan, stormer_plan, stiff_plan, dop853_data, radau_data, model
 
 
 @formula
-def step_factor(logarithm, last, power):
+def step_factor(logarithm, last, per_power):
     """
     Return by how much the next step may be longer: Gustafsson's PI control.
 
     logarithm, last: to base 2, of the error estimate over the tolerance, of this step and of the
-    one before it. Where the error is far below the tolerance the step goes where it should be at
-    once.
+    one before it; per_power: one over the power of the step in the estimate. Where the error is
+    far below the tolerance the step goes where it should be at once.
     """
-    return binary_power(max(_LOG_SAFETY - (0.5 * logarithm - 0.2 * last) / power,
-                            _LOG_AT_ONCE - logarithm / power))
+    return binary_power(max(_LOG_SAFETY + 0.2 * per_power * last - 0.5 * per_power * logarithm,
+                            _LOG_AT_ONCE - per_power * logarithm))
 
 
 @formula
@@ -284,8 +284,12 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
     status = REACHED
     stalled = 0
     tolerance = max(MARGIN * tolerance, clock[FLOOR])
+    # What a next step waits for is multiplied, not divided.
+    per_tolerance, per_power = 1.0 / tolerance, 1.0 / power
     while True:
-        if clock[STEP] > 0.0:
+        # Asked here too: what is in fill_grid would be got ready at every step.
+        if clock[STEP] > 0.0 and place_in_step(grid, grid.done[0], clock,
+                                               2.0 / clock[STEP]) <= 1.0:
             fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y,
                       rate, y_new, rate_new, error, memory, dense)
         target = (limit - np.int64(clock[BASE]) * 1000000000) * 1e-9
@@ -327,7 +331,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
                 tableaux.gragg, tableaux.stormer, tableaux.stiff, tableaux.dop853,
                 tableaux.radau, model, drive, size, t, h, y, rate, tolerance, memory, y_new,
                 error)
-            ratio = error_norm(bodies, rigid, y_new, error) / tolerance
+            ratio = error_norm(bodies, rigid, y, error) * per_tolerance
             if not ratio < 1e30:
                 ratio = 1e30
             logarithm = binary_logarithm(max(ratio, 1e-30))
@@ -339,7 +343,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
                 before, h_before = logarithm, h
                 accepted = stalled >= 2
             if accepted:
-                factor = step_factor(logarithm, clock[LAST_ERROR], power)
+                factor = step_factor(logarithm, clock[LAST_ERROR], per_power)
                 if ratio > 1.0:
                     counted[ROUNDED] += 1
                     # No shorter step would be better.

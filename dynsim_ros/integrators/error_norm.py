@@ -24,7 +24,7 @@ def part_error(first, count, y, error):
         if not e < math.inf:
             return math.inf
         largest = max(largest, e)
-    return largest / size
+    return largest * (1.0 / size)
 
 
 @formula
