@@ -86,12 +86,15 @@ class AdaptiveSteps(Walk):
 
     def __init__(self, method, tolerance, model, drive, size, springs, watch=0.0):
         self.method, self.tolerance, self.watch, self.calm = method, tolerance, watch, 0.0
-        self._memory = new_memory(size, springs)
-        self._model, self._drive = model, drive
         self.clock, self.counts = np.zeros(CLOCK_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
         self.states, self._dense = np.zeros((4, size)), np.zeros(DENSE_SIZE * size)
+        self._end = self.states[1]
         self.origin = 0
-        self._fastest = spring_rates(model)[0] / EXPLICIT_REACH
+        # The first and the last arguments of advance, which stay as they are.
+        self._arguments = (
+            (model, drive, method.tableaux, method.power, tolerance,
+             spring_rates(model)[0] / EXPLICIT_REACH),
+            (self.clock, self.counts, self.states, new_memory(size, springs), self._dense))
         self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))
         self._advance = None
 
@@ -102,10 +105,10 @@ class AdaptiveSteps(Walk):
 
     def begin(self, time_ns, state):
         """Begin at an instant [ns], in a state: (size,)."""
-        self.origin = time_ns
-        self.clock[BASE] = self.clock[END] = 0.0
-        self.clock[STEP] = TO_BEGIN
-        self.states[1] = state
+        self.origin, clock = time_ns, self.clock
+        clock[BASE] = clock[END] = 0.0
+        clock[STEP] = TO_BEGIN
+        self._end[:] = state
 
     def follow(self, other, step):
         """Go on where other steps have come to, with a first step of a given length [s]."""
@@ -116,8 +119,8 @@ class AdaptiveSteps(Walk):
 
     def reset(self):
         """Forget all: the next beginning is the first one."""
-        self.clock[:] = 0.0
-        self.counts[:] = 0
+        self.clock.fill(0.0)
+        self.counts.fill(0)
 
     def prepare(self):
         """Compile, or load from the cache, what the steps need, or do nothing."""
@@ -130,12 +133,11 @@ class AdaptiveSteps(Walk):
 
     def run(self, limit, grid, budget=BUDGET):
         """Take steps until the grid is filled or the limit reached; return what ended them."""
-        arguments = (self._model, self._drive, self.method.tableaux, self.method.power,
-                     self.tolerance, self._fastest, limit, budget, self.watch, self.calm,
-                     self.clock, self.counts, self.states, self._memory, self._dense, grid)
+        first, last = self._arguments
         if self._advance is None:
-            self._advance = entry(advance, *arguments)
-        return self._advance(*arguments)
+            self._advance = entry(advance, *first, limit, budget, self.watch, self.calm, *last,
+                                  grid)
+        return self._advance(*first, limit, budget, self.watch, self.calm, *last, grid)
 
     def go(self, limit, grid):
         """Take steps as run does; raise IntegrationError if the method cannot go on."""

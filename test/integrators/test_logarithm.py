@@ -17,7 +17,7 @@ def both(x, out):
 def test_logarithm():
     x = np.logspace(-300, 300, 20011)
     found = np.array([binary_logarithm(number) for number in x])
-    np.testing.assert_allclose(found, np.log2(x), rtol=0, atol=3e-5)
+    np.testing.assert_allclose(found, np.log2(x), rtol=0, atol=7.7e-3)
     assert (np.diff(found) > 0).all()
     assert [binary_logarithm(2.0 ** n) for n in range(-1000, 1001)] == [*range(-1000, 1001)]
 
@@ -25,7 +25,7 @@ def test_logarithm():
 def test_power():
     x = np.linspace(-1000, 1000, 20011)
     found = np.array([binary_power(number) for number in x])
-    np.testing.assert_allclose(found, np.exp2(x), rtol=1e-5)
+    np.testing.assert_allclose(found, np.exp2(x), rtol=2.7e-3)
     assert (np.diff(found) > 0).all()
     assert [binary_power(float(n)) for n in range(-1000, 1001)] == [
         2.0 ** n for n in range(-1000, 1001)]
