@@ -7,58 +7,18 @@ The C library's exp, log and pow differ in their last bits from one machine to t
 with them all states, would too. Three digits are plenty here.
 """
 
-import struct
-
-from numba import types
-from numba.extending import intrinsic, overload
-
+from ..physics.bits import BIAS, bits_of, MANTISSA_BITS, number_of
 from ..physics.jit import formula
-from ..physics.lanes import FLOAT
 
-_BIAS, _MANTISSA_BITS = 1023, 52
-_MANTISSA = (1 << _MANTISSA_BITS) - 1
-_ONE = _BIAS << _MANTISSA_BITS
-
-
-def bits_of(x):
-    """Return the bits of a number as an integer."""
-    return struct.unpack('<q', struct.pack('<d', x))[0]
-
-
-def number_of(bits):
-    """Return the number that has some bits."""
-    return struct.unpack('<d', struct.pack('<q', bits))[0]
-
-
-@intrinsic
-def _cast_to_bits(typing_context, x):
-    def generate(context, builder, sig, args):
-        return builder.bitcast(args[0], context.get_value_type(types.int64))
-    return types.int64(FLOAT), generate
-
-
-@intrinsic
-def _cast_to_number(typing_context, bits):
-    def generate(context, builder, sig, args):
-        return builder.bitcast(args[0], context.get_value_type(FLOAT))
-    return FLOAT(types.int64), generate
-
-
-@overload(bits_of)
-def _bits_of(x):
-    return lambda x: _cast_to_bits(x)
-
-
-@overload(number_of)
-def _number_of(bits):
-    return lambda bits: _cast_to_number(bits)
+_MANTISSA = (1 << MANTISSA_BITS) - 1
+_ONE = BIAS << MANTISSA_BITS
 
 
 @formula
 def binary_logarithm(x):
     """Return log2(x) to within 3e-5; x: positive, finite, not subnormal."""
     bits = bits_of(x)
-    exponent = (bits >> _MANTISSA_BITS) - _BIAS
+    exponent = (bits >> MANTISSA_BITS) - BIAS
     m = number_of((bits & _MANTISSA) | _ONE) - 1.0
     # Exact at 1 and 2, so that it is continuous.
     return exponent + m * (1.0 + (1.0 - m) * (
@@ -70,5 +30,5 @@ def binary_power(x):
     """Return 2^x to within a factor of 1 + 1e-5; x: from -1000 to 1000."""
     whole = int(x + 1024.0) - 1024
     m = x - whole
-    return number_of((whole + _BIAS) << _MANTISSA_BITS) * (
+    return number_of((whole + BIAS) << MANTISSA_BITS) * (
         1.0 + m * (1.0 + (m - 1.0) * (0.306945 + m * (0.065548 + m * 0.013704))))

@@ -1,0 +1,66 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The exponential, and the same less 1, which keeps its digits where that is nearly zero.
+
+exp(x) = 2^n exp(r) with |r| <= log(2) / 2, and exp(r) by a polynomial.
+"""
+
+import math
+
+from ..bits import BIAS, MANTISSA_BITS, number_of
+from ..jit import formula
+
+# 1 / log(2), and log(2) as the sum of two numbers, the first of 42 bits: n times it is exact.
+_INVERSE, _HIGH, _LOW = 1.4426950408889634, 0.6931471805598903, 5.497923018708371e-14
+# Adding it and taking it away again rounds to an integer.
+_ROUND = 1.5 * 2.0 ** 52
+# Beyond these the exponential is infinite, and zero.
+_HIGHEST, _LOWEST = 709.79, -745.14
+
+
+@formula
+def series(r):
+    """Return (exp(r) - 1 - r) / r^2."""
+    square = r * r
+    fourth = square * square
+    return (((0.5 + r * 0.1666666666666667) + square * (0.04166666666666667
+                                                       + r * 0.008333333333326136))
+            + fourth * ((0.0013888888888883748 + r * 0.00019841269874820627)
+                        + square * (2.4801587325547743e-05 + r * 2.7557255400206422e-06))
+            + fourth * fourth * ((2.75572736431103e-07 + r * 2.5105217004720745e-08)
+                                 + square * 2.0914686968086876e-09))
+
+
+@formula
+def power_of_two(n):
+    """Return 2^n; n: integer from -1022 to 1023."""
+    return number_of((n + BIAS) << MANTISSA_BITS)
+
+
+@formula
+def exponential(x):
+    """Return exp(x) and exp(x) - 1; one that is not used is not computed either."""
+    if not _LOWEST < x < _HIGHEST:
+        if x > 0.0:
+            return math.inf, math.inf
+        return (0.0, -1.0) if x < 0.0 else (x, x)
+    count = (x * _INVERSE + _ROUND) - _ROUND
+    n = int(count)
+    whole, low = x - count * _HIGH, count * _LOW
+    r = whole - low
+    left = (whole - r) - low
+    rest = r * r * series(r) + (left + left * r)
+    # exp(r) = 1 + r + rest
+    head = 1.0 + r
+    # In two steps: either power alone may be out of range.
+    power = (head + ((1.0 - head + r) + rest)) * power_of_two(n >> 1) * power_of_two(n - (n >> 1))
+    if abs(n) > 60:
+        return power, power - 1.0
+    # 2^n - 1 + 2^n r + 2^n rest
+    scale = power_of_two(n)
+    less, part = scale - 1.0, scale * r
+    head = less + part
+    less = head + (((less - head + part) + ((scale - less) - 1.0)) + scale * rest)
+    # For -0 it is -0.
+    return power, math.copysign(less, x)
