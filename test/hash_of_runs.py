@@ -8,6 +8,7 @@ Arguments: the method of a scene of which alone to do so, and the scene, else of
 
 import hashlib
 import json
+import re
 import sys
 
 from dynsim_ros.scene import load_scene, scene_names
@@ -38,6 +39,16 @@ def bits_of(name, method):
 def bits_of_all():
     """Return {scene and method: digest}."""
     return {f'{name} {method}': bits_of(name, method) for name, method in RUNS}
+
+
+def called_by_kernels():
+    """Return the names of the functions outside of them that the kernels used so far call."""
+    kernels = {id(value): value for name, module in [*sys.modules.items()]
+               if name.startswith('dynsim_ros.') for value in vars(module).values()
+               if hasattr(value, 'overloads')}
+    return {name for kernel in kernels.values() for compiled in kernel.overloads.values()
+            for name in re.findall(r'^declare [^@]*@"?([^"(]+)', str(
+                compiled.library._get_module_for_linking()), re.MULTILINE)}
 
 
 def main():

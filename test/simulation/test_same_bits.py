@@ -4,16 +4,22 @@
 
 import ast
 import json
+import math
+import re
 import sys
 
 from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
-from hash_of_runs import bits_of_all
+from hash_of_runs import bits_of_all, called_by_kernels
 from plain import environment, in_plain_python
 import pytest
 from tree import output_of, ROOT
 
 SCRIPT = ROOT / 'test' / 'hash_of_runs.py'
+# What a kernel may call.
+EXACT = re.compile(r'llvm\.(sqrt|fma|floor|fabs|copysign|mem(cpy|set|move)|[us](max|min))\.')
+# What of a module of mathematics is fixed to the last bit, or made of integers.
+FIXED = {'comb', 'copysign', 'factorial', 'floor', 'inf', 'isfinite', 'nan', 'pi', 'sqrt'}
 
 
 @pytest.fixture(scope='module')
@@ -26,7 +32,16 @@ def test_two_runs(here):
 
 
 def test_two_processes(here):
-    assert json.loads(output_of([sys.executable, SCRIPT], env=environment())) == here
+    """The other one with a C library that takes the processor for one without FMA and AVX2."""
+    plainer = environment(GLIBC_TUNABLES='glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2')
+    assert json.loads(output_of([sys.executable, SCRIPT], env=plainer)) == here
+
+
+def test_kernels_call_no_function_of_the_c_library(here):
+    """Nor what the compiler makes such a call of; those that are left are exact by IEEE 754."""
+    called = called_by_kernels()
+    assert 'llvm.sqrt.f64' in called
+    assert {name for name in called if not EXACT.match(name)} == set()
 
 
 def test_compiled_and_as_plain_python(here):
@@ -56,6 +71,16 @@ def test_nothing_that_adds_up_differently_elsewhere(room):
             counts = name == 'sum' and 'isinstance' in ast.unparse(call)
             assert counts or (name not in ('sum', 'math.hypot', 'math.fsum', 'math.dist', 'np.dot')
                               and not name.startswith('np.linalg')), f'{path}:{call.lineno}'
+
+
+@pytest.mark.parametrize('room', ['physics', 'integrators', 'simulation/rows'])
+def test_nothing_of_the_c_library_in_what_is_compiled(room):
+    for path in (ROOT / 'dynsim_ros' / room).rglob('*.py'):
+        for node in ast.walk(ast.parse(path.read_text())):
+            name = ast.unparse(node) if isinstance(node, ast.Attribute) else ''
+            module, _, function = name.partition('.')
+            if module in ('math', 'np') and hasattr(math, function.replace('arc', 'a')):
+                assert function in FIXED, f'{path}:{node.lineno}: {name}'
 
 
 def bits(run):

@@ -65,7 +65,8 @@ def arc_tangent(y, x):
         if across != across or along != along:
             return x + y
         if across == math.inf or along == math.inf:
-            across, along = float(across == math.inf), float(along == math.inf)
+            across = 1.0 if across == math.inf else 0.0
+            along = 1.0 if along == math.inf else 0.0
     small, large = min(across, along), max(across, along)
     # The angle of small and large: so many eighths of a whole turn, and the arc tangent of r.
     r, r_left, eighths = slope(small, large)
