@@ -8,9 +8,9 @@ error. Beside that is the error after rounding the coefficients to double precis
 to base 2; of the function it makes as much as the power of z or r before it.
 """
 
-from mpmath import chebyfit, fac, linspace, log, mp, mpf, pi, polyval, sqrt, tan
+from mpmath import cos, fac, linspace, log, lu_solve, matrix, mp, mpf, pi, sqrt, tan
 
-DIGITS, SERIES, SAMPLES = 40, 40, 500
+DIGITS, SERIES, SAMPLES = 40, 40, 200
 with mp.workdps(DIGITS):
     EIGHTH = 1.0001 * pi / 4
     HALF_OCTAVE = 1.0001 * log(2) / 2
@@ -27,16 +27,25 @@ FITS = {
 }
 
 
+def value(coefficients, z):
+    """Return a polynomial at z, to DIGITS."""
+    return sum(coefficient * z ** n for n, coefficient in enumerate(coefficients))
+
+
 def fitted(name):
     """Return the coefficients of one of FITS as floats, that of degree 0 first, and their error."""
     with mp.workdps(DIGITS):
         lowest, highest, count, coefficient = FITS[name]
-        series = [coefficient(n) for n in range(SERIES)][::-1]
-        rounded = [float(number) for number in chebyfit(lambda z: polyval(series, z),
-                                                        [lowest, highest], count)]
-        error = max(abs(polyval(rounded, z) - polyval(series, z))
+        series = [coefficient(n) for n in range(SERIES)]
+        # At the zeros of Chebyshev's polynomial nothing is left.
+        zeros = [(lowest + highest + (highest - lowest) * cos(pi * (i + 0.5) / count)) / 2
+                 for i in range(count)]
+        found = lu_solve(matrix([[z ** n for n in range(count)] for z in zeros]),
+                         matrix([value(series, z) for z in zeros]))
+        rounded = [float(number) for number in found]
+        error = max(abs(value(rounded, z) - value(series, z))
                     for z in linspace(lowest, highest, SAMPLES))
-        return tuple(rounded[::-1]), float(log(error, 2))
+        return rounded, float(log(error, 2))
 
 
 if __name__ == '__main__':

@@ -39,12 +39,15 @@ def series_of_phi_2(x):
 @formula
 def decay_and_phis(x):
     """
-    Return exp(-x), phi_1(x) and phi_2(x), at the cost of one exponential.
+    Return exp(-x), phi_1(x) and phi_2(x).
 
     phi_2: (exp(-x) - 1 + x) / x^2, the mean of (1 - s) exp(-x s), 1 / 2 at x = 0.
     """
-    decay, less = exponential(-x)
     if abs(x) < 1.0:
-        return decay, (-less / x if x != 0.0 else 1.0), series_of_phi_2(x)
+        second = series_of_phi_2(x)
+        first = 1.0 - x * second
+        return 1.0 - x * first, first, second
+    decay, _ = exponential(-x)
+    less = decay - 1.0
     # Divided twice: the square of a very large x is not finite.
     return decay, -less / x, (less + x) / x / x

@@ -47,20 +47,21 @@ def exponential(x):
         return (0.0, -1.0) if x < 0.0 else (x, x)
     count = (x * _INVERSE + _ROUND) - _ROUND
     n = int(count)
+    # exp(r) = 1 + r + rest
     whole, low = x - count * _HIGH, count * _LOW
     r = whole - low
     left = (whole - r) - low
     rest = r * r * series(r) + (left + left * r)
-    # exp(r) = 1 + r + rest
     head = 1.0 + r
-    # In two steps: either power alone may be out of range.
-    power = (head + ((1.0 - head + r) + rest)) * power_of_two(n >> 1) * power_of_two(n - (n >> 1))
+    one = head + ((1.0 - head + r) + rest)
     if abs(n) > 60:
+        # In two steps: either power alone may be out of range.
+        power = one * power_of_two(n >> 1) * power_of_two(n - (n >> 1))
         return power, power - 1.0
-    # 2^n - 1 + 2^n r + 2^n rest
     scale = power_of_two(n)
+    # 2^n - 1 + 2^n r + 2^n rest
     less, part = scale - 1.0, scale * r
     head = less + part
     less = head + (((less - head + part) + ((scale - less) - 1.0)) + scale * rest)
     # For -0 it is -0.
-    return power, math.copysign(less, x)
+    return scale * one, math.copysign(less, x)
