@@ -20,8 +20,8 @@ FITS = {
     # sin(x) = x + x z S(z), cos(x) = 1 - z / 2 + z z C(z); z = x x
     'SINE': (0, EIGHTH ** 2, 7, lambda n: (-1) ** (n + 1) / fac(2 * n + 3)),
     'COSINE': (0, EIGHTH ** 2, 6, lambda n: (-1) ** n / fac(2 * n + 4)),
-    # exp(r) = 1 + r + r r E(r)
-    'EXPONENTIAL': (-HALF_OCTAVE, HALF_OCTAVE, 11, lambda n: 1 / fac(n + 2)),
+    # exp(r) = 1 + r + r r / 2 + r r r E(r)
+    'EXPONENTIAL': (-HALF_OCTAVE, HALF_OCTAVE, 10, lambda n: 1 / fac(n + 3)),
     # arctan(r) = r + r z A(z), artanh(r) = r - r z A(-z); z = r r
     'ARCTANGENT': (FLATTEST, STEEPEST, 13, lambda n: mpf(-1) ** (n + 1) / (2 * n + 3)),
 }

@@ -48,6 +48,7 @@ def decay_and_phis(x):
         first = 1.0 - x * second
         return 1.0 - x * first, first, second
     decay, _ = exponential(-x)
-    less = decay - 1.0
-    # Divided twice: the square of a very large x is not finite.
-    return decay, -less / x, (less + x) / x / x
+    # While the exponential is on its way.
+    inverse = 1.0 / x
+    first = (1.0 - decay) * inverse
+    return decay, first, (1.0 - first) * inverse

@@ -20,16 +20,14 @@ _HIGHEST, _LOWEST = 709.79, -745.14
 
 
 @formula
-def series(r):
-    """Return (exp(r) - 1 - r) / r^2."""
-    square = r * r
+def series(r, square):
+    """Return (exp(r) - 1 - r - r^2 / 2) / r^3; square: r^2."""
     fourth = square * square
-    return (((0.5 + r * 0.1666666666666667) + square * (0.04166666666666667
-                                                       + r * 0.008333333333326136))
-            + fourth * ((0.0013888888888883748 + r * 0.00019841269874820627)
-                        + square * (2.4801587325547743e-05 + r * 2.7557255400206422e-06))
-            + fourth * fourth * ((2.75572736431103e-07 + r * 2.5105217004720745e-08)
-                                 + square * 2.0914686968086876e-09))
+    return (((0.16666666666666669 + r * 0.041666666666666664)
+             + square * (0.008333333333330062 + r * 0.0013888888888886552))
+            + fourth * ((0.00019841269863053618 + r * 2.4801587317144498e-05)
+                        + square * (2.7557268459997064e-06 + r * 2.755728296954995e-07))
+            + fourth * fourth * (2.510038549551032e-08 + r * 2.0911236630261545e-09))
 
 
 @formula
@@ -51,9 +49,9 @@ def exponential(x):
     whole, low = x - count * _HIGH, count * _LOW
     r = whole - low
     left = (whole - r) - low
-    rest = r * r * series(r) + (left + left * r)
-    head = 1.0 + r
-    one = head + ((1.0 - head + r) + rest)
+    square = r * r
+    rest = (0.5 * square + r * square * series(r, square)) + (left + left * r)
+    one = 1.0 + (r + rest)
     if abs(n) > 60:
         # In two steps: either power alone may be out of range.
         power = one * power_of_two(n >> 1) * power_of_two(n - (n >> 1))
