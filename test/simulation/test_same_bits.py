@@ -16,8 +16,10 @@ import pytest
 from tree import output_of, ROOT
 
 SCRIPT = ROOT / 'test' / 'hash_of_runs.py'
-# What a kernel may call.
-EXACT = re.compile(r'llvm\.(sqrt|fma|floor|fabs|copysign|mem(cpy|set|move)|[us](max|min))\.')
+# What a kernel may call: what IEEE 754 fixes to the last bit, work on integers and memory, and what
+# has to do with being called from Python.
+HARMLESS = re.compile(r'(llvm\.)?(sqrt|fma|floor|fabs|copysign|is\.fpclass)\b|llvm\.(?!pow).*\.(v\d+)?i\d+$|'
+                      r'llvm\.(mem|stack|lifetime)|Py|numba_|NRT_')
 # What of a module of mathematics is fixed to the last bit, or made of integers.
 FIXED = {'comb', 'copysign', 'factorial', 'floor', 'inf', 'isfinite', 'nan', 'pi', 'sqrt'}
 
@@ -38,10 +40,10 @@ def test_two_processes(here):
 
 
 def test_kernels_call_no_function_of_the_c_library(here):
-    """Nor what the compiler makes such a call of; those that are left are exact by IEEE 754."""
+    """Nor what the compiler makes such a call of."""
     called = called_by_kernels()
     assert 'llvm.sqrt.f64' in called
-    assert {name for name in called if not EXACT.match(name)} == set()
+    assert {name for name in called if not HARMLESS.match(name)} == set()
 
 
 def test_compiled_and_as_plain_python(here):
