@@ -10,16 +10,19 @@ import sys
 
 from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
-from hash_of_runs import bits_of_all, called_by_kernels
+from hash_of_runs import bits_of, bits_of_all, called_by_kernels
 from plain import environment, in_plain_python
 import pytest
 from tree import output_of, ROOT
 
 SCRIPT = ROOT / 'test' / 'hash_of_runs.py'
+# A C library that takes the processor for one without FMA and AVX2.
+PLAINER = {'GLIBC_TUNABLES': 'glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2'}
 # What a kernel may call: what IEEE 754 fixes to the last bit, work on integers and memory, and what
 # has to do with being called from Python.
-HARMLESS = re.compile(r'(llvm\.)?(sqrt|fma|floor|fabs|copysign|is\.fpclass)\b|llvm\.(?!pow).*\.(v\d+)?i\d+$|'
-                      r'llvm\.(mem|stack|lifetime)|Py|numba_|NRT_')
+HARMLESS = re.compile(r'(llvm\.)?(sqrt|fma|floor|fabs|copysign|is\.fpclass)\b'
+                      r'|llvm\.(?!pow).*\.(v\d+)?i\d+$|llvm\.(mem|stack|lifetime)'
+                      r'|Py|numba_|NRT_')
 # What of a module of mathematics is fixed to the last bit, or made of integers.
 FIXED = {'comb', 'copysign', 'factorial', 'floor', 'inf', 'isfinite', 'nan', 'pi', 'sqrt'}
 
@@ -33,10 +36,18 @@ def test_two_runs(here):
     assert bits_of_all() == here
 
 
+def elsewhere(*words, **variables):
+    """Return what SCRIPT prints in a process with other environment variables."""
+    return json.loads(output_of([sys.executable, SCRIPT, *words], env=environment(**variables)))
+
+
 def test_two_processes(here):
-    """The other one with a C library that takes the processor for one without FMA and AVX2."""
-    plainer = environment(GLIBC_TUNABLES='glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2')
-    assert json.loads(output_of([sys.executable, SCRIPT], env=plainer)) == here
+    assert elsewhere(**PLAINER) == here
+
+
+def test_two_processes_with_rotations_by_axis_and_angle():
+    name, method = 'sphere_on_spring', 'explicit_euler_axis_angle'
+    assert elsewhere(method, name, **PLAINER) == {f'{name} {method}': bits_of(name, method)}
 
 
 def test_kernels_call_no_function_of_the_c_library(here):
@@ -52,9 +63,8 @@ def test_compiled_and_as_plain_python(here):
 
 def test_on_a_processor_that_fuses_nothing(here):
     """Nor has it vectors of four numbers; what is written as fused is so on any."""
-    plainest = environment(NUMBA_CPU_NAME='generic', NUMBA_CPU_FEATURES='')
-    found = json.loads(output_of([sys.executable, SCRIPT, 'auto', 'particle_on_spring'],
-                                 env=plainest))
+    found = elsewhere('auto', 'particle_on_spring', NUMBA_CPU_NAME='generic',
+                      NUMBA_CPU_FEATURES='')
     assert found.items() <= here.items()
     assert len(found) == 1
 
