@@ -41,13 +41,6 @@ _MASK = (1 << _BITS) - 1
 
 
 @formula
-def digit_of_product(high, low, place, carry):
-    """Return a digit of (high 2^28 + low) times 2 / pi, and what it carries to the one before."""
-    total = high * _DIGITS[place + 1] + low * _DIGITS[place] + carry
-    return total & _MASK, total >> _BITS
-
-
-@formula
 def quarters_of(size):
     """
     Return how many quarter turns an angle is: that count mod 4, and the rest as two numbers.
@@ -59,21 +52,18 @@ def quarters_of(size):
     exponent = (bits >> MANTISSA_BITS) - BIAS - MANTISSA_BITS
     # Digits before this one make multiples of four quarters.
     first = (exponent - 2) // _BITS + 1
-    high, low, place = mantissa >> _BITS, mantissa & _MASK, first + 1
-    _, carry = digit_of_product(high, low, place + 7, 0)
-    _, carry = digit_of_product(high, low, place + 6, carry)
-    e, carry = digit_of_product(high, low, place + 5, carry)
-    d, carry = digit_of_product(high, low, place + 4, carry)
-    c, carry = digit_of_product(high, low, place + 3, carry)
-    b, carry = digit_of_product(high, low, place + 2, carry)
-    a, carry = digit_of_product(high, low, place + 1, carry)
-    units, _ = digit_of_product(high, low, place, carry)
-    # The quarters are the first bits of the number of two digits units, a.
+    # The digits of the product with 2 / pi, from the last one on: units is where first is.
+    high, low = mantissa >> _BITS, mantissa & _MASK
+    units, a, b, c, d, e, carry = 0, 0, 0, 0, 0, 0, 0
+    for place in range(first + 8, first, -1):
+        total = high * _DIGITS[place + 1] + low * _DIGITS[place] + carry
+        units, a, b, c, d, e = total & _MASK, units, a, b, c, d
+        carry = total >> _BITS
+    # The quarters are the first bits of the two digits units, a: to the nearest.
     shift = _BITS * (first + 1) - exponent
     a |= units << _BITS
-    count, a = a >> shift, a & ((1 << shift) - 1)
-    if a >> (shift - 1):
-        count, a = count + 1, a - (1 << shift)
+    count = (a + (1 << (shift - 1))) >> shift
+    a -= count << shift
     unit = 2.0 ** -_BITS
     rest, left_b = two_sum(float(a), unit * b)
     rest, left_c = two_sum(rest, unit * unit * c)
