@@ -8,6 +8,7 @@ A quaternion q and the matrix R(q) turn components in body axes into components 
 
 import math
 
+from .elementary import sine_cosine
 from .fused import fused
 from .jit import formula
 from .lanes import root
@@ -75,8 +76,9 @@ def axis_angle_matrix(rotation):
     x, y, z = rotation
     # sin(angle) / angle and (1 - cos(angle)) / angle^2; their series where these lose digits.
     if angle > 1e-4:
-        s = math.sin(angle) / angle
-        half = math.sin(0.5 * angle) / angle
+        sine, cosine = sine_cosine(0.5 * angle)
+        half = sine / angle
+        s = 2.0 * half * cosine
         c = 2.0 * half * half
     else:
         s = 1.0 - angle * angle / 6.0
@@ -90,11 +92,12 @@ def axis_angle_matrix(rotation):
 def axis_angle_quaternion(rotation):
     """Return the unit quaternion of an axis-angle vector; rotation: (3,) as above [rad]."""
     angle = norm(rotation)
+    sine, cosine = sine_cosine(0.5 * angle)
     if angle > 1e-4:
-        s = math.sin(0.5 * angle) / angle
+        s = sine / angle
     else:
         s = 0.5 - angle * angle / 48.0
-    return (math.cos(0.5 * angle), s * rotation[0], s * rotation[1], s * rotation[2])
+    return (cosine, s * rotation[0], s * rotation[1], s * rotation[2])
 
 
 @formula

@@ -5,7 +5,9 @@
 import sys
 import sysconfig
 
+from dynsim_ros.scene import Particle, Scene
 import pytest
+from recorded import record
 from tree import copy_tree, output_of, outside_environment, ROOT
 
 
@@ -45,11 +47,24 @@ def test_ament_marker_is_installed(prefix):
     assert (index / 'dynsim_ros').is_file()
 
 
-@pytest.mark.parametrize('name', ['export', 'plot', 'replay', 'sim_node', 'simulate', 'view'])
+@pytest.mark.parametrize('name', ['export', 'plot', 'replay', 'rerun', 'sim_node', 'simulate',
+                                  'view'])
 def test_executables_are_in_bin_and_start(prefix, environment, name):
     help_text = output_of([prefix / 'bin' / name, '--help'], cwd='/', env=environment)
     assert help_text.startswith(f'usage: {name}')
     assert not (prefix / 'lib' / 'dynsim_ros').exists()
+
+
+def test_a_run_is_lived_again_by_another_installation(prefix, environment, tmp_path):
+    """From the bag alone, with kernels that this installation compiles for itself."""
+    scene = Scene(gravity=9.81, bodies=(Particle(name='stone', mass=2.0, velocity=(1, 2, 3)),))
+    record(tmp_path / 'run.mcap', scene, 50, integrator='explicit_euler')
+    caches = tmp_path / 'caches'
+    caches.mkdir()
+    said = output_of([prefix / 'bin' / 'rerun', 'run.mcap'], cwd=tmp_path,
+                     env=environment | {'XDG_CACHE_HOME': str(caches)})
+    assert said.startswith('identical, 51 states ')
+    assert [*(caches / 'dynsim_ros' / 'kernels').rglob('*.nbi')]
 
 
 def test_finds_its_scenes(prefix, environment):

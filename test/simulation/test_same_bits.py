@@ -4,16 +4,27 @@
 
 import ast
 import json
+import math
+import re
 import sys
 
 from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
-from hash_of_runs import bits_of_all
+from hash_of_runs import bits_of, bits_of_all, called_by_kernels
 from plain import environment, in_plain_python
 import pytest
 from tree import output_of, ROOT
 
 SCRIPT = ROOT / 'test' / 'hash_of_runs.py'
+# A C library that takes the processor for one without FMA and AVX2.
+PLAINER = {'GLIBC_TUNABLES': 'glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2'}
+# What a kernel may call: what IEEE 754 fixes to the last bit, work on integers and memory, and what
+# has to do with being called from Python.
+HARMLESS = re.compile(r'(llvm\.)?(sqrt|fma|floor|fabs|copysign|is\.fpclass)\b'
+                      r'|llvm\.(?!pow).*\.(v\d+)?i\d+$|llvm\.(mem|stack|lifetime)'
+                      r'|Py|numba_|NRT_')
+# What of a module of mathematics is fixed to the last bit, or made of integers.
+FIXED = {'comb', 'copysign', 'factorial', 'floor', 'inf', 'isfinite', 'nan', 'pi', 'sqrt'}
 
 
 @pytest.fixture(scope='module')
@@ -25,8 +36,25 @@ def test_two_runs(here):
     assert bits_of_all() == here
 
 
+def elsewhere(*words, **variables):
+    """Return what SCRIPT prints in a process with other environment variables."""
+    return json.loads(output_of([sys.executable, SCRIPT, *words], env=environment(**variables)))
+
+
 def test_two_processes(here):
-    assert json.loads(output_of([sys.executable, SCRIPT], env=environment())) == here
+    assert elsewhere(**PLAINER) == here
+
+
+def test_two_processes_with_rotations_by_axis_and_angle():
+    name, method = 'sphere_on_spring', 'explicit_euler_axis_angle'
+    assert elsewhere(method, name, **PLAINER) == {f'{name} {method}': bits_of(name, method)}
+
+
+def test_kernels_call_no_function_of_the_c_library(here):
+    """Nor what the compiler makes such a call of."""
+    called = called_by_kernels()
+    assert 'llvm.sqrt.f64' in called
+    assert {name for name in called if not HARMLESS.match(name)} == set()
 
 
 def test_compiled_and_as_plain_python(here):
@@ -35,9 +63,8 @@ def test_compiled_and_as_plain_python(here):
 
 def test_on_a_processor_that_fuses_nothing(here):
     """Nor has it vectors of four numbers; what is written as fused is so on any."""
-    plainest = environment(NUMBA_CPU_NAME='generic', NUMBA_CPU_FEATURES='')
-    found = json.loads(output_of([sys.executable, SCRIPT, 'auto', 'particle_on_spring'],
-                                 env=plainest))
+    found = elsewhere('auto', 'particle_on_spring', NUMBA_CPU_NAME='generic',
+                      NUMBA_CPU_FEATURES='')
     assert found.items() <= here.items()
     assert len(found) == 1
 
@@ -56,6 +83,16 @@ def test_nothing_that_adds_up_differently_elsewhere(room):
             counts = name == 'sum' and 'isinstance' in ast.unparse(call)
             assert counts or (name not in ('sum', 'math.hypot', 'math.fsum', 'math.dist', 'np.dot')
                               and not name.startswith('np.linalg')), f'{path}:{call.lineno}'
+
+
+@pytest.mark.parametrize('room', ['physics', 'integrators', 'simulation/rows'])
+def test_nothing_of_the_c_library_in_what_is_compiled(room):
+    for path in (ROOT / 'dynsim_ros' / room).rglob('*.py'):
+        for node in ast.walk(ast.parse(path.read_text())):
+            name = ast.unparse(node) if isinstance(node, ast.Attribute) else ''
+            module, _, function = name.partition('.')
+            if module in ('math', 'np') and hasattr(math, function.replace('arc', 'a')):
+                assert function in FIXED, f'{path}:{node.lineno}: {name}'
 
 
 def bits(run):

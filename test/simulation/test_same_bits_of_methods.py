@@ -1,20 +1,33 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The same bits from every method that chooses its own steps: again, compiled or not, however seen.
+The same bits from every method that chooses its own steps: again, elsewhere, plain, however seen.
 
 Who looks at a run, how often, and whether works are counted, changes nothing of the motion.
 """
 
+import hashlib
+import sys
+
 from by_hand import nothing_compiled
 from dynsim_ros.simulation import Propagator, Simulator
 import numpy as np
+from plain import environment
 import pytest
 from references import load
 from simulated import samples
+from tree import output_of
 
 # Extrapolation is compared in test_same_bits.py, a step of dop853 in test_dop853.py.
 COMPILED = [('S3q', 'stiff'), ('S3q', 'radau')]
+# Prints a digest of what test_compiled_again_and_as_plain_python computes.
+DIGEST = """
+import hashlib, sys
+from references import load
+from simulated import samples
+found, _ = samples(load(sys.argv[1])[0], 0.2, 100.0, integrator=sys.argv[2], tolerance=1e-6)
+print(hashlib.sha256(found.tobytes()).hexdigest())
+"""
 METHODS = ('extrapolation', 'dop853', 'stiff', 'radau', 'auto', 'leapfrog')
 
 
@@ -26,6 +39,10 @@ def test_compiled_again_and_as_plain_python(name, method):
     assert counts['steps'] > 3
     again, _ = samples(scene, 0.2, 100.0, **settings)
     np.testing.assert_array_equal(again, compiled)
+    # in a process whose C library takes the processor for one without FMA and AVX2
+    plainer = environment(GLIBC_TUNABLES='glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2')
+    other = output_of([sys.executable, '-c', DIGEST, name, method], env=plainer)
+    assert other.strip() == hashlib.sha256(compiled.tobytes()).hexdigest()
     with nothing_compiled():
         plain, plain_counts = samples(scene, 0.2, 100.0, **settings)
     np.testing.assert_array_equal(plain, compiled)

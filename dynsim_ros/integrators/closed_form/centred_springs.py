@@ -14,8 +14,8 @@ Source: Landau and Lifshitz, Mechanics (1976), sections 25 and 26.
 """
 
 from .oscillator import oscillation, responses
-from .phase import quotient_in_two
 from ...physics.jit import formula
+from ...physics.two_sum import quotient_in_two
 from ...physics.vector import add, scale, subtract
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from .elliptic import agm, carlson_rf
 from .theta import (hyperbolic, hyperbolic_phase, hyperbolic_ratio, trigonometric,
                     trigonometric_phase, trigonometric_ratio)
+from ...physics.elementary import arc_tangent, exponential, sine_cosine
 from ...physics.jit import formula
 
 # (3 - 2 sqrt(2))^2: at this complementary parameter K = 2 K', where the nomes for k_1 are equal.
@@ -60,11 +61,12 @@ def phase_height(modulus, height):
 @formula
 def trigonometric_constants(complement, landen, inner, quarter, other, height):
     """Return the Jacobi for K = quarter <= 2 K' = 2 other."""
-    q = math.exp(-2.0 * math.pi * other / quarter)
     spread = math.pi * landen * height / quarter
     middle = 2.0 * math.pi * other / quarter
-    even, odd, slope = trigonometric_phase(q, math.exp(spread - middle),
-                                           math.exp(-spread - middle))
+    q, _ = exponential(-middle)
+    more, _ = exponential(spread - middle)
+    less, _ = exponential(-spread - middle)
+    even, odd, slope = trigonometric_phase(q, more, less)
     scale = 0.5 * math.pi / quarter
     return Jacobi(False, complement, landen, inner, 2.0 * quarter, 0.5 / quarter, scale, q,
                   trigonometric_ratio(q), even, odd, scale * slope, 0.0)
@@ -74,16 +76,17 @@ def trigonometric_constants(complement, landen, inner, quarter, other, height):
 def hyperbolic_constants(complement, landen, inner, quarter, other, height):
     """Return the Jacobi for K = quarter >= 2 K' = 2 other; quarter may be infinite."""
     reach = 0.25 * math.pi * quarter / other
-    q = math.exp(-2.0 * reach)
+    q, _ = exponential(-2.0 * reach)
     beta = 0.25 * math.pi * landen * height / other
-    even, odd, slope = hyperbolic_phase(q, math.cos(beta), math.sin(beta))
+    sine, cosine = sine_cosine(beta)
+    even, odd, slope = hyperbolic_phase(q, cosine, sine)
     ratio = hyperbolic_ratio(q)
     scale = 0.25 * math.pi / other
     period, inverse_period, turn = 0.0, 0.0, 0.0
     if quarter < math.inf:
         period, inverse_period = 2.0 * quarter, 0.5 / quarter
         _, _, real, imaginary = hyperbolic(reach, q, ratio, even, odd)
-        turn = 2.0 * math.atan2(imaginary, real)
+        turn = 2.0 * arc_tangent(imaginary, real)
     return Jacobi(True, complement, landen, inner, period, inverse_period, scale, q, ratio, even,
                   odd, scale * slope, turn)
 

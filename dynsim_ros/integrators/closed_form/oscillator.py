@@ -15,8 +15,9 @@ import math
 
 from .phase import angle_in_two, cosine_and_sine, root_in_two
 from .phi import phi_1
-from .two_sum import two_product, two_sum
+from ...physics.elementary import exponential
 from ...physics.jit import formula
+from ...physics.two_sum import two_product, two_sum
 
 _TERMS = 26
 
@@ -45,7 +46,7 @@ def swinging(t, g, square, t_left, square_left):
     frequency, left = root_in_two(difference, left)
     angle, left = angle_in_two(frequency, left, t, t_left)
     cosine, sine = cosine_and_sine(angle, left)
-    decay = math.exp(-g * t)
+    decay, _ = exponential(-g * t)
     s = decay * t
     if angle != 0.0:
         s *= sine / angle
@@ -65,8 +66,9 @@ def creeping(t, g, square):
     if square > 0.0:
         slow_rate = square / fast_rate
     fast, slow, gap = fast_rate * t, slow_rate * t, 2.0 * root * t
-    faded = math.exp(-fast)
-    s = t * math.exp(-slow) * phi_1(gap)
+    faded, _ = exponential(-fast)
+    slower, _ = exponential(-slow)
+    s = t * slower * phi_1(gap)
     c = faded + fast_rate * s
     if slow > 0.5:
         p = (1.0 - c) / square

@@ -10,8 +10,9 @@ their product is therefore carried along as a second number.
 import math
 
 from .rotate_exactly import squared_norm
-from .two_sum import two_product
+from ...physics.elementary import sine_cosine
 from ...physics.jit import formula
+from ...physics.two_sum import two_product
 
 _SECOND = 1_000_000_000
 
@@ -43,14 +44,6 @@ def norm_in_two(a):
 
 
 @formula
-def quotient_in_two(a, b):
-    """Return a / b as the sum of two numbers."""
-    quotient = a / b
-    back, left = two_product(quotient, b)
-    return quotient, ((a - back) - left) / b
-
-
-@formula
 def angle_in_two(rate, rate_left, t, t_left):
     """Return rate times time, each the sum of two numbers, as such a sum."""
     angle, left = two_product(rate, t)
@@ -60,5 +53,5 @@ def angle_in_two(rate, rate_left, t, t_left):
 @formula
 def cosine_and_sine(angle, left):
     """Return cosine and sine of the sum of two numbers; |left| < 1e-5."""
-    c, s = math.cos(angle), math.sin(angle)
+    s, c = sine_cosine(angle)
     return c - left * (s + 0.5 * left * c), s + left * (c - 0.5 * left * s)

@@ -9,6 +9,7 @@ with the sign of the argument turned.
 
 import math
 
+from ...physics.elementary import exponential
 from ...physics.jit import formula
 
 # 1 / 2!, -1 / 3!, 1 / 4!, ...: what is left out is below 1e-17 for |x| < 1.
@@ -20,7 +21,8 @@ def phi_1(x):
     """Return (1 - exp(-x)) / x: the mean of exp(-x s) over s in [0, 1]."""
     if x == 0.0:
         return 1.0
-    return -math.expm1(-x) / x
+    _, less = exponential(-x)
+    return -less / x
 
 
 @formula
@@ -37,14 +39,16 @@ def series_of_phi_2(x):
 @formula
 def decay_and_phis(x):
     """
-    Return exp(-x), phi_1(x) and phi_2(x), at the cost of one exponential.
+    Return exp(-x), phi_1(x) and phi_2(x).
 
     phi_2: (exp(-x) - 1 + x) / x^2, the mean of (1 - s) exp(-x s), 1 / 2 at x = 0.
     """
     if abs(x) < 1.0:
-        less = math.expm1(-x)
-        return 1.0 + less, (-less / x if x != 0.0 else 1.0), series_of_phi_2(x)
-    decay = math.exp(-x)
-    less = decay - 1.0
-    # Divided twice: the square of a very large x is not finite.
-    return decay, -less / x, (less + x) / x / x
+        second = series_of_phi_2(x)
+        first = 1.0 - x * second
+        return 1.0 - x * first, first, second
+    decay, _ = exponential(-x)
+    # While the exponential is on its way.
+    inverse = 1.0 / x
+    first = (1.0 - decay) * inverse
+    return decay, first, (1.0 - first) * inverse

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rotation of a vector with twice the digits, for what rounding would decide otherwise."""
 
-from .two_sum import two_product, two_sum
 from ...physics.jit import formula
+from ...physics.two_sum import two_product, two_sum
 
 
 @formula

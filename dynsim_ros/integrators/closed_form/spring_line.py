@@ -17,8 +17,9 @@ import math
 from typing import NamedTuple
 
 from .oscillator import oscillation, responses
-from .phase import quotient_in_two
+from ...physics.elementary import arc_tangent, area_tangent
 from ...physics.jit import formula
+from ...physics.two_sum import quotient_in_two
 from ...physics.vector import add, cross, dot, norm, scale, subtract
 
 
@@ -105,7 +106,7 @@ def turning_times(line):
     across = g * v - force
     if square > g * g:
         frequency = math.sqrt(square - g * g)
-        angle = math.atan2(frequency * v, across)
+        angle = arc_tangent(frequency * v, across)
         if angle <= 0.0:
             angle += math.pi
         return angle / frequency, (angle + math.pi) / frequency
@@ -115,7 +116,7 @@ def turning_times(line):
     time, ratio = v / across, root * v / across
     if not (time > 0.0 and ratio < 1.0):
         return math.inf, math.inf
-    return time * (math.atanh(ratio) / ratio if ratio > 0.0 else 1.0), math.inf
+    return time * (area_tangent(ratio) / ratio if ratio > 0.0 else 1.0), math.inf
 
 
 @formula

@@ -14,6 +14,7 @@ Phase: the argument of theta_4(x + i B) (trigonometric) or of theta_2(beta - i x
 
 import math
 
+from ...physics.elementary import exponential, sine_cosine
 from ...physics.jit import formula
 
 
@@ -56,7 +57,7 @@ def trigonometric(x, q, ratio, even, odd):
 
     |x| <= pi / 2 (u = K); q, ratio, even, odd: from the functions above.
     """
-    sine, cosine = math.sin(x), math.cos(x)
+    sine, cosine = sine_cosine(x)
     c1, s1 = cosine * cosine - sine * sine, 2.0 * sine * cosine
     c2, s2, c3, s3 = square_and_cube(c1, s1)
     a1 = q * q
@@ -98,12 +99,7 @@ def hyperbolic(x, q, ratio, even, odd):
 
     Numerators and denominators are divided by powers of exp(|x|): none of them overflows.
     """
-    if abs(x) < 0.3:
-        less = math.expm1(-2.0 * abs(x))
-        e = 1.0 + less
-    else:
-        e = math.exp(-2.0 * abs(x))
-        less = e - 1.0
+    e, less = exponential(-2.0 * abs(x))
     sine = math.copysign(less, x)
     y = q / e if q > 0.0 else 0.0
     e2, e3 = e * e, e * e * e

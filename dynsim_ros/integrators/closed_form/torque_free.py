@@ -20,9 +20,9 @@ from typing import NamedTuple
 
 from .jacobi import Jacobi, jacobi
 from .phase import angle_in_two, cosine_and_sine
-from .two_sum import two_product, two_sum
 from ...physics.jit import formula
 from ...physics.rotation import quaternion_product, rotate
+from ...physics.two_sum import two_product, two_sum
 
 
 class TorqueFree(NamedTuple):

@@ -15,9 +15,9 @@ from .elliptic import carlson_rf
 from .jacobi import circular, jacobi, jacobi_constants
 from .rotate_exactly import rotate_back_exactly
 from .torque_free import conjugate, orientation_about_momentum, TorqueFree
-from .two_sum import two_product, two_sum
 from ...physics.jit import formula
 from ...physics.rotation import matrix_quaternion, quaternion_product
+from ...physics.two_sum import two_product, two_sum
 from ...physics.vector import norm, scale, transform
 
 # A rotation is steady if omega x (I omega) is smaller than this against |omega| |I omega|, or

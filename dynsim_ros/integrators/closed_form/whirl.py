@@ -13,9 +13,8 @@ therefore for spins that the air stops within a turn or two, see `reaches`.
 Source: the method of Frobenius, DLMF 2.7(i); products are those of quaternions.
 """
 
-import math
-
 from .spin import free_spin
+from ...physics.elementary import exponential
 from ...physics.jit import formula
 from ...physics.rotation import quaternion_norm, quaternion_product
 from ...physics.state import quaternion
@@ -60,7 +59,7 @@ def terms_needed(x):
 @formula
 def sum_of_series(series, x):
     """Return F(exp(-x)), even and odd powers side by side; series: (TERMS, 4) array, x >= 0."""
-    z = math.exp(-x)
+    z, _ = exponential(-x)
     square = z * z
     a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for n in range(terms_needed(x) - 2, -1, -2):

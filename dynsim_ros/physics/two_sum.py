@@ -1,13 +1,13 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Sums and products with the rounding error that they make, as a second number.
+Sums, products and quotients with the rounding error that they make, as a second number.
 
 Source: Knuth, The Art of Computer Programming 2 (1997), 4.2.2; T. J. Dekker, A floating-point
 technique for extending the available precision, Numer. Math. 18 (1971), 224-242.
 """
 
-from ...physics.jit import formula
+from .jit import formula
 
 _SPLITTER = 2.0 ** 27 + 1.0
 
@@ -35,3 +35,11 @@ def two_product(a, b):
     a_high, a_low = halves(a)
     b_high, b_low = halves(b)
     return product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+
+
+@formula
+def quotient_in_two(a, b, a_left=0.0, b_left=0.0):
+    """Return (a + a_left) / (b + b_left) as the sum of two numbers; what is left is small."""
+    quotient = a / b
+    back, left = two_product(quotient, b)
+    return quotient, ((a - back) - left + (a_left - quotient * b_left)) / b
