@@ -50,8 +50,9 @@ def identify(scene, times, positions):
 
     def misfit(logarithms, count):
         values = dict(zip(NAMES, np.exp(logarithms).tolist()))
-        motion = Propagator(with_values(scene, values)).samples(times[count - 1], rate)
-        return (motion[:count, place] - positions[:count]).ravel()
+        # Where one method took over from another, the misfit would not be smooth in the values.
+        motion = Propagator(with_values(scene, values), integrator='extrapolation')
+        return (motion.samples(times[count - 1], rate)[:count, place] - positions[:count]).ravel()
 
     found = np.log(GUESS)
     for seconds in PARTS:

@@ -7,6 +7,7 @@ The compiler never fuses on its own, so that results do not depend on the machin
 written here it is fused on all of them, and in plain Python too.
 """
 
+import ctypes
 from fractions import Fraction
 import math
 
@@ -21,13 +22,14 @@ from .lanes import as_vector, COUNT, FLOAT, LANES, VECTOR
 def fused(a, b, c):
     """Return a b + c, rounded once; each a number or Lanes. Other kinds of numbers are exact."""
     if any(isinstance(x, np.ndarray) for x in (a, b, c)):
-        return np.array([_fused(*map(float, numbers)) for numbers in np.broadcast(a, b, c)])
+        return _fused_each(a, b, c).astype(float)
     if all(isinstance(x, (float, int)) for x in (a, b, c)):
-        return _fused(float(a), float(b), float(c))
+        return _fused(a, b, c)
     return a * b + c
 
 
-def _fused(a, b, c):
+def fused_by_fractions(a, b, c):
+    """Return a b + c of floats, rounded once, where there is nothing quicker."""
     if not (math.isfinite(a) and math.isfinite(b)):
         return a * b + c
     if not math.isfinite(c):
@@ -40,6 +42,20 @@ def _fused(a, b, c):
         return float(exact)
     except OverflowError:
         return math.inf if exact > 0 else -math.inf
+
+
+def _fused_by_c():
+    """Return what the C library has for it, which has to round once, too; None without it."""
+    try:
+        found = ctypes.CDLL(None).fma
+    except (AttributeError, OSError, TypeError):
+        return None
+    found.restype, found.argtypes = ctypes.c_double, [ctypes.c_double] * 3
+    return found
+
+
+_fused = _fused_by_c() or fused_by_fractions
+_fused_each = np.frompyfunc(_fused, 3, 1)
 
 
 @intrinsic

@@ -5,7 +5,7 @@
 from fractions import Fraction
 import math
 
-from dynsim_ros.physics.fused import fused
+from dynsim_ros.physics.fused import fused, fused_by_fractions
 from dynsim_ros.physics.jit import kernel
 from dynsim_ros.physics.lanes import lanes_at, put_lanes
 import numpy as np
@@ -36,6 +36,7 @@ def test_is_rounded_once():
     for a, b, c in numbers():
         exact = float(Fraction(a) * Fraction(b) + Fraction(c))
         assert fused(a, b, c) == fuse_numbers(a, b, c) == exact
+        assert fused_by_fractions(a, b, c) == exact
     assert any(fused(a, b, c) != a * b + c for a, b, c in numbers())
 
 
@@ -54,6 +55,7 @@ def test_lanes_are_numbers_side_by_side():
     (math.nan, 1.0, 1.0), (0.0, -1.0, 0.0), (0.0, -1.0, -0.0), (1e-200, 1e-200, 0.0),
     (5e-324, 0.5, 5e-324), (1e200, 1e200, -1e308)])
 def test_wild_numbers(a, b, c):
-    compiled, plain = fuse_numbers(a, b, c), fused(a, b, c)
-    assert np.array_equal(compiled, plain, equal_nan=True)
-    assert math.copysign(1.0, compiled) == math.copysign(1.0, plain) or math.isnan(plain)
+    compiled = fuse_numbers(a, b, c)
+    for plain in (fused(a, b, c), fused_by_fractions(a, b, c)):
+        assert np.array_equal(compiled, plain, equal_nan=True)
+        assert math.copysign(1.0, compiled) == math.copysign(1.0, plain) or math.isnan(plain)

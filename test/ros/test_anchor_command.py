@@ -90,8 +90,9 @@ def test_the_speed_of_the_anchor_is_felt_by_the_damper(client):
 
 
 def test_the_body_follows(client):
-    # by a method that does not go over to another one, for which it would be compiled meanwhile
-    assert client.set_group({'spring.damping': 5.0, 'air.linear_drag': 4.0,
+    # by a method that does not go over to another one, for which it would be compiled meanwhile;
+    # in few ticks, of which each is a message on every topic
+    assert client.set_group({'spring.damping': 5.0, 'air.linear_drag': 4.0, 'rate': 10.0,
                              'air.rotational_drag': 0.05, 'integrator': 'rk4'}).successful
     move(client, 1.0, -0.5, 3.0)
     client.configure({'real_time_factor': 0.0})

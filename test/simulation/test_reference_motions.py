@@ -26,7 +26,7 @@ COMPILED = ('S1', 'S2', 'S3q', 'S3q8', 'S3b', 'S3b8', 'at_rest', 'fast_ball', 's
 def error_at_first_time(name, method, tolerance):
     scene, times, motions = load(name)
     settings = {'integrator': method, 'tolerance': tolerance}
-    if name in COMPILED:
+    if name in COMPILED and (name, method) != ('S1', 'dop853'):
         state = samples(scene, times[0], 1 / times[0], **settings)[0][-1]
     else:
         with nothing_compiled():
