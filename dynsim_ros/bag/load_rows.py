@@ -4,7 +4,10 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Collection, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+import os
 from typing import NamedTuple
 
 from mcap.opcode import Opcode
@@ -12,13 +15,23 @@ import numpy as np
 
 from .index import Block
 from .load_column import Column, Rows, SLACK
-from .load_kernel import Found, prepare_finding, room_for
+from .load_messages import find_messages, Found
 from .reader import Bag
 from .records import DamagedChunk, HEAD, open_chunk
 from .sources import Source
 
 # Chunks are taken together until they have so many bytes.
 _BATCH = 4 * 1024 * 1024
+# Several cores decompress at once: that needs no Python, nor does it hold it up.
+_WORKERS = min(os.cpu_count() or 1, 8)
+
+
+class Chunk(NamedTuple):
+    """The records of a stretch of a file, the messages among them, and whether all fit."""
+
+    records: bytes
+    found: Found
+    fits: bool
 
 
 class LoadedRows(NamedTuple):
@@ -58,42 +71,51 @@ def read_rows(bag: Bag, topics: Collection[str], low: int, high: int) -> LoadedR
 def _batches(bag: Bag, source: Source, low: int, high: int
              ) -> Iterator[tuple[np.ndarray, Found]]:
     """Yield records as (n,) uint8 and the messages among them, in the order of the file."""
-    chunks: list[tuple[Block, bytes]] = []
+    batch: list[Chunk] = []
     size = 0
-    for block in sorted(source.index.blocks, key=lambda block: block.start):
-        if block.start_ns > high or block.end_ns < low:
-            continue
+    for block, future in _chunks(source, low, high):
         try:
-            chunks.append((block, _records(source, block)))
+            chunk = future.result()
         except DamagedChunk as error:
             bag.report_damage(source, block, error)
             continue
-        size += len(chunks[-1][1])
-        if size >= _BATCH:
-            yield _messages(bag, source, chunks)
-            chunks, size = [], 0
-    yield _messages(bag, source, chunks)
-
-
-def _records(source: Source, block: Block) -> bytes:
-    """Return the records of a stretch of a file, out of their chunk."""
-    source.stream.seek(block.start)
-    content = source.stream.read(block.end - block.start)
-    is_chunk = content[:1] == bytes([Opcode.CHUNK])
-    return open_chunk(content[HEAD.size:]) if is_chunk else content
-
-
-def _messages(bag: Bag, source: Source, chunks: list[tuple[Block, bytes]]
-              ) -> tuple[np.ndarray, Found]:
-    """Return the records of some blocks as one array, and the messages among them."""
-    find = prepare_finding()
-    data = bytearray().join([*(records for _, records in chunks), bytes(SLACK)])
-    data = np.frombuffer(data, np.uint8)
-    found, count, start = room_for(len(data)), 0, 0
-    for block, records in chunks:
-        count = find(data, start, start + len(records), found, count)
-        if count < 0:
+        if not chunk.fits:
             bag.report_damage(source, block, DamagedChunk('its records do not fit'))
-            count = -count - 1
-        start += len(records)
-    return data, Found(*(part[:count] for part in found))
+        batch.append(chunk)
+        size += len(chunk.records)
+        if size >= _BATCH:
+            yield _joined(batch)
+            batch, size = [], 0
+    if batch:
+        yield _joined(batch)
+
+
+def _chunks(source: Source, low: int, high: int) -> Iterator[tuple[Block, Future[Chunk]]]:
+    """Yield the blocks with messages of some times and their content, opened a few ahead."""
+    ahead: deque[tuple[Block, Future[Chunk]]] = deque()
+    with ThreadPoolExecutor(_WORKERS) as pool:
+        for block in sorted(source.index.blocks, key=lambda block: block.start):
+            if block.start_ns <= high and block.end_ns >= low:
+                source.stream.seek(block.start)
+                content = source.stream.read(block.end - block.start)
+                index = source.stream.read(block.index_size)
+                ahead.append((block, pool.submit(_opened, content, index)))
+                if len(ahead) > 2 * _WORKERS:
+                    yield ahead.popleft()
+        yield from ahead
+
+
+def _opened(content: bytes, index: bytes) -> Chunk:
+    """Return a stretch of a file, out of its chunk; raises DamagedChunk."""
+    is_chunk = content[:1] == bytes([Opcode.CHUNK])
+    records = open_chunk(content[HEAD.size:]) if is_chunk else content
+    return Chunk(records, *find_messages(records, index))
+
+
+def _joined(chunks: list[Chunk]) -> tuple[np.ndarray, Found]:
+    """Return the records of some chunks as one array, and the messages among them."""
+    data = bytearray().join([*(chunk.records for chunk in chunks), bytes(SLACK)])
+    ends = np.cumsum([len(chunk.records) for chunk in chunks])
+    moved = [chunk.found.moved(end - len(chunk.records))
+             for chunk, end in zip(chunks, ends, strict=True)]
+    return np.frombuffer(data, np.uint8), Found(*map(np.concatenate, zip(*moved, strict=True)))
