@@ -183,9 +183,9 @@ class LivePage(Page):
         pull = gui.add_slider('pull [N/m]', 0.0, 5.0 * firmness, 0.05 * firmness, firmness,
                               hint='drag a body: force per distance from the grabbed point')
         self.when(pull, lambda value: setattr(self.pulls, 'stiffness', value))
-        self.add_looks()
         self.parameters = LiveParameters(self, remote, scene_quantities(self.stage.scene),
                                          lambda reason: self._report(False, reason))
+        self.add_looks()
 
     def _toggle_pause(self):
         self._remote.call('pause', not self._is_paused, self._paused)

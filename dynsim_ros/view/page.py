@@ -18,8 +18,9 @@ from .stage import Stage
 _PLOTS_WIDTH, _CONTROLS_WIDTH = 380, 310
 # How often what is shown is brought up to date [Hz].
 RATE = 30.0
-# Small print is dark enough to be read.
-_STYLE = '<style>:root,:host{--mantine-color-dimmed:#4a5056!important}</style>'
+# Small print stands out enough from what is behind it to be read, also with `?darkMode`.
+_STYLE = ('<style>:root{--mantine-color-dimmed:#4a5056!important}'
+          ':root[data-mantine-color-scheme=dark]{--mantine-color-dimmed:#b8bdc3!important}</style>')
 
 
 class Page:
@@ -65,9 +66,9 @@ class Page:
         async def _(_):
             self.later(action)
 
-    def on_key(self, label, key, action):
-        """Have action() done on a key, and as a command of the palette."""
-        @self.gui.add_command(label, hotkey=key).on_trigger
+    def on_key(self, label, key, action, modifier=None):
+        """Have action() done on a key, and as a command of the palette; modifier: 'shift', …."""
+        @self.gui.add_command(label, hotkey=key, modifier=modifier).on_trigger
         async def _(_):
             self.later(action)
 
@@ -101,7 +102,8 @@ class Page:
     def add_looks(self):
         """Add the folder in which one chooses what the 3-D view shows."""
         stage, gui = self.stage, self.gui
-        with gui.add_folder('3-D view', expand_by_default=False):
+        # Open: the head of a closed folder cannot be reached by the keyboard.
+        with gui.add_folder('3-D view'):
             if stage.arrows.kinds:
                 gui.add_html(_legend())
             for kind in stage.arrows.kinds:

@@ -6,7 +6,7 @@ import random
 import subprocess
 import sys
 
-from bag_samples import write_foreign, write_sample
+from bag_samples import sample_messages, write_foreign, write_sample
 from dynsim_ros.bag.load_messages import find_messages
 from dynsim_ros.bag.reader import open_bag
 from dynsim_ros.bag.records import HEAD, open_chunk
@@ -30,7 +30,6 @@ def chunk(request, tmp_path):
     if request.param is write_sample:
         write_sample(tmp_path / 'a.mcap', 20)
     else:
-        from bag_samples import sample_messages
         write_foreign(tmp_path / 'a.mcap', sample_messages(20), chunk_size=10 ** 6)
     return first_chunk(tmp_path / 'a.mcap')
 

@@ -99,8 +99,10 @@ def test_buttons_and_keys(page, client):
 
 
 def test_parameter_is_set_by_typing(page, client):
-    page.get_by_text('spring', exact=True).locator('visible=true').last.click()
-    page.get_by_text('stiffness [N/m]').wait_for()
+    menu = page.get_by_role('combobox', name='parameters')
+    menu.fill('spring')
+    menu.press('Enter')
+    page.get_by_text('stiffness [N/m]').locator('visible=true').wait_for()
     row = page.get_by_text('stiffness [N/m]').locator('xpath=ancestor::*[.//input[@inputmode]][1]')
     box = row.get_by_role('textbox').first
     box.fill('150')
