@@ -26,53 +26,56 @@ class Found(NamedTuple):
     size: np.ndarray
     log_ns: np.ndarray
 
-    def moved(self, by: int) -> Found:
-        """Return them so many bytes further on."""
-        return self._replace(start=self.start + by)
 
-
-def find_messages(records: bytes, index: bytes) -> tuple[Found, bool]:
+def indexed(data: np.ndarray, indexes: list[tuple[int, bytes]]) -> Found | None:
     """
-    Return the messages among records in their order, and whether all records fit.
+    Return the messages among the records of chunks as their indexes tell, in order.
 
-    index: the message index records of their chunk, b'' for none. Whatever it says, what is found
-    is what a walk from record to record finds.
+    data: (n,) uint8, the records of chunk after chunk; indexes: (where a chunk begins, its
+    message index records). None where a walk from record to record would find anything else.
     """
-    data = np.frombuffer(records, np.uint8)
-    starts = _indexed(data, index)
-    if starts is not None:
-        return _found(data, starts), True
-    # Imported here: hardly a bag needs the compiled code, which takes a second to load.
-    from .chunk_records import records_of
-
-    walked = records_of(records)
-    return _found(data, np.array(walked.starts(), np.int64)), walked.end == len(records)
-
-
-def _indexed(data, index):
-    """Return where the messages begin, ascending (n,); None if the index does not tell it."""
     try:
-        places = [np.frombuffer(index[start + _CHANNEL_AND_SIZE:end], '<i8')[1::2]
-                  for opcode, start, end in parts(index)
-                  if opcode == Opcode.MESSAGE_INDEX and not (end - start - _CHANNEL_AND_SIZE)
-                  % _ENTRY]
+        places = [place for base, index in indexes for place in _places(base, index)]
     except DamagedChunk:
         return None
     starts = np.sort(np.concatenate([np.zeros(0, np.int64), *places]))
     if not len(starts) or starts[0] < 0 or starts[-1] > len(data) - _RECORD.itemsize:
         return None
     heads = _heads(data, starts)
-    lengths = heads['length']
-    if ((heads['opcode'] != Opcode.MESSAGE) | (lengths < MESSAGE.size)
-            | (lengths > len(data))).any():
+    lengths = heads['length'].copy()
+    if ((heads['opcode'] != Opcode.MESSAGE).any() or lengths.min() < MESSAGE.size
+            or lengths.max() > len(data)):
         return None
-    # From the end of a message to the start of the next one there may be other records only.
-    ends = np.concatenate([[0], starts + HEAD.size + lengths])
+    # From the end of a message to the start of the next one there may be other records only, and
+    # none from chunk to chunk.
+    ends = np.concatenate([[0], starts + (HEAD.size + lengths)])
     nexts = np.concatenate([starts, [len(data)]])
-    if (ends > nexts).any() or any(_hides_messages(data[ends[gap]:nexts[gap]])
+    if (ends > nexts).any() or not np.isin([base for base, _ in indexes], ends).all() or any(_hides_messages(data[ends[gap]:nexts[gap]])
                                    for gap in np.flatnonzero(ends < nexts)):
         return None
-    return starts
+    return _found(starts, heads)
+
+
+def walked(records: list[bytes]) -> tuple[Found, list[bool]]:
+    """Return the messages among the records of chunks, and of each chunk whether all fit."""
+    # Imported here: hardly a bag needs the compiled code, which takes a second to load.
+    from .chunk_records import records_of
+
+    starts, fit, base = [np.zeros(0, np.int64)], [], 0
+    for chunk in records:
+        found = records_of(chunk)
+        starts.append(np.array(found.starts(), np.int64) + base)
+        fit.append(found.end == len(chunk))
+        base += len(chunk)
+    starts = np.concatenate(starts)
+    return _found(starts, _heads(np.frombuffer(b''.join(records), np.uint8), starts)), fit
+
+
+def _places(base, index):
+    """Yield (n,) places of messages of each channel, from where the chunk begins."""
+    for opcode, start, end in parts(index):
+        if opcode == Opcode.MESSAGE_INDEX and (end - start) % _ENTRY == _CHANNEL_AND_SIZE:
+            yield np.frombuffer(index[start + _CHANNEL_AND_SIZE:end], '<i8')[1::2] + base
 
 
 def _hides_messages(data):
@@ -85,13 +88,12 @@ def _hides_messages(data):
 
 def _heads(data, starts):
     """Return the records that begin at some places up to their data: (n,) of _RECORD."""
-    if not len(starts):
-        return np.zeros(0, _RECORD)
-    windows = np.ndarray((len(data) - _RECORD.itemsize + 1,), _RECORD, data, strides=(1,))
-    return windows[starts]
+    size = _RECORD.itemsize
+    # As plain bytes: numpy copies structures field by field.
+    windows = np.ndarray((max(len(data) - size + 1, 0),), f'V{size}', data, strides=(1,))
+    return windows[starts].view(_RECORD)
 
 
-def _found(data, starts):
-    heads = _heads(data, starts)
+def _found(starts, heads):
     return Found(heads['channel'], starts + _RECORD.itemsize, heads['length'] - MESSAGE.size,
                  heads['log_ns'])

@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Collection, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+import itertools
+import operator
 import os
 from typing import NamedTuple
 
@@ -15,7 +17,7 @@ import numpy as np
 
 from .index import Block
 from .load_column import Column, Rows, SLACK
-from .load_messages import find_messages, Found
+from .load_messages import Found, indexed, walked
 from .reader import Bag
 from .records import DamagedChunk, HEAD, open_chunk
 from .sources import Source
@@ -27,11 +29,11 @@ _WORKERS = min(os.cpu_count() or 1, 8)
 
 
 class Chunk(NamedTuple):
-    """The records of a stretch of a file, the messages among them, and whether all fit."""
+    """A stretch of a file: where it lies, the records in it, and its message index records."""
 
+    block: Block
     records: bytes
-    found: Found
-    fits: bool
+    index: bytes
 
 
 class LoadedRows(NamedTuple):
@@ -73,49 +75,50 @@ def _batches(bag: Bag, source: Source, low: int, high: int
     """Yield records as (n,) uint8 and the messages among them, in the order of the file."""
     batch: list[Chunk] = []
     size = 0
-    for block, future in _chunks(source, low, high):
+    for block, opening in _openings(source, low, high):
         try:
-            chunk = future.result()
+            batch.append(opening.result())
         except DamagedChunk as error:
             bag.report_damage(source, block, error)
             continue
-        if not chunk.fits:
-            bag.report_damage(source, block, DamagedChunk('its records do not fit'))
-        batch.append(chunk)
-        size += len(chunk.records)
+        size += len(batch[-1].records)
         if size >= _BATCH:
-            yield _joined(batch)
+            yield _messages(bag, source, batch)
             batch, size = [], 0
     if batch:
-        yield _joined(batch)
+        yield _messages(bag, source, batch)
 
 
-def _chunks(source: Source, low: int, high: int) -> Iterator[tuple[Block, Future[Chunk]]]:
-    """Yield the blocks with messages of some times and their content, opened a few ahead."""
+def _openings(source: Source, low: int, high: int) -> Iterator[tuple[Block, Future[Chunk]]]:
+    """Yield the blocks with messages of some times and what opens them, a few ahead."""
     ahead: deque[tuple[Block, Future[Chunk]]] = deque()
     with ThreadPoolExecutor(_WORKERS) as pool:
         for block in sorted(source.index.blocks, key=lambda block: block.start):
-            if block.start_ns <= high and block.end_ns >= low:
-                source.stream.seek(block.start)
-                content = source.stream.read(block.end - block.start)
-                index = source.stream.read(block.index_size)
-                ahead.append((block, pool.submit(_opened, content, index)))
-                if len(ahead) > 2 * _WORKERS:
-                    yield ahead.popleft()
+            if block.start_ns > high or block.end_ns < low:
+                continue
+            source.stream.seek(block.start)
+            content = source.stream.read(block.end - block.start)
+            index = source.stream.read(block.index_size)
+            ahead.append((block, pool.submit(_opened, block, content, index)))
+            if len(ahead) > 4 * _WORKERS:
+                yield ahead.popleft()
         yield from ahead
 
 
-def _opened(content: bytes, index: bytes) -> Chunk:
+def _opened(block: Block, content: bytes, index: bytes) -> Chunk:
     """Return a stretch of a file, out of its chunk; raises DamagedChunk."""
     is_chunk = content[:1] == bytes([Opcode.CHUNK])
-    records = open_chunk(content[HEAD.size:]) if is_chunk else content
-    return Chunk(records, *find_messages(records, index))
+    return Chunk(block, open_chunk(content[HEAD.size:]) if is_chunk else content, index)
 
 
-def _joined(chunks: list[Chunk]) -> tuple[np.ndarray, Found]:
+def _messages(bag: Bag, source: Source, chunks: list[Chunk]) -> tuple[np.ndarray, Found]:
     """Return the records of some chunks as one array, and the messages among them."""
-    data = bytearray().join([*(chunk.records for chunk in chunks), bytes(SLACK)])
-    ends = np.cumsum([len(chunk.records) for chunk in chunks])
-    moved = [chunk.found.moved(end - len(chunk.records))
-             for chunk, end in zip(chunks, ends, strict=True)]
-    return np.frombuffer(data, np.uint8), Found(*map(np.concatenate, zip(*moved, strict=True)))
+    records = [chunk.records for chunk in chunks]
+    data = np.frombuffer(bytearray().join([*records, bytes(SLACK)]), np.uint8)
+    bases = itertools.accumulate(map(len, records), initial=0)
+    found = indexed(data[:-SLACK], [(base, chunk.index) for base, chunk in zip(bases, chunks)])
+    if found is None:
+        found, fit = walked(records)
+        for chunk in itertools.compress(chunks, map(operator.not_, fit)):
+            bag.report_damage(source, chunk.block, DamagedChunk('its records do not fit'))
+    return data, found
