@@ -19,15 +19,12 @@ import sys
 import tempfile
 import time
 
-from node_processes import ROOT
-
-sys.path.append(str(ROOT / 'test'))
-from chromium import chromium  # noqa: E402
-from page_client import PageClient  # noqa: E402
+sys.path.append(str(Path(__file__).resolve().parent.parent / 'test'))
+from chromium import chromium
+from page_client import PageClient
 
 SIZES = {'desk': {'width': 1280, 'height': 760}, 'phone': {'width': 390, 'height': 844}}
 TICKS_PER_SECOND = os.sysconf('SC_CLK_TCK')
-# What the viewer is measured without, and with, in turn: a first run has to read all from disk.
 FRAMES = """seconds => new Promise(resolve => {
     const times = [];
     const next = now => {
@@ -36,7 +33,7 @@ FRAMES = """seconds => new Promise(resolve => {
     };
     requestAnimationFrame(next);
 })"""
-DRAWN = """() => new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(resolve)))"""
+DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 HEAD = """\
 # The viewer
 

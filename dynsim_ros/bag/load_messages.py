@@ -50,8 +50,9 @@ def indexed(data: np.ndarray, indexes: list[tuple[int, bytes]]) -> Found | None:
     # none from chunk to chunk.
     ends = np.concatenate([[0], starts + (HEAD.size + lengths)])
     nexts = np.concatenate([starts, [len(data)]])
-    if (ends > nexts).any() or not np.isin([base for base, _ in indexes], ends).all() or any(_hides_messages(data[ends[gap]:nexts[gap]])
-                                   for gap in np.flatnonzero(ends < nexts)):
+    if (ends > nexts).any() or not np.isin([base for base, _ in indexes], ends).all():
+        return None
+    if any(_hides_messages(data[ends[gap]:nexts[gap]]) for gap in np.flatnonzero(ends < nexts)):
         return None
     return _found(starts, heads)
 

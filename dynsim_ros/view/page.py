@@ -19,8 +19,8 @@ _PLOTS_WIDTH, _CONTROLS_WIDTH = 380, 310
 # How often what is shown is brought up to date [Hz].
 RATE = 30.0
 # Small print stands out enough from what is behind it to be read, also with `?darkMode`.
-_STYLE = ('<style>:root{--mantine-color-dimmed:#4a5056!important}'
-          ':root[data-mantine-color-scheme=dark]{--mantine-color-dimmed:#b8bdc3!important}</style>')
+_STYLE = ('<style>:root{--mantine-color-dimmed:#4a5056!important}:root'
+          '[data-mantine-color-scheme=dark]{--mantine-color-dimmed:#b8bdc3!important}</style>')
 
 
 class Page:

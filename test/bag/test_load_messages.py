@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages by the index of their chunk, which may be wrong, beside a walk from record to record."""
+"""Messages by the index of a chunk, which may be wrong, beside a walk from record to record."""
 
 import random
 import subprocess
