@@ -19,9 +19,6 @@ import sys
 import tempfile
 import time
 
-sys.path.append(str(Path(__file__).resolve().parent.parent / 'test'))
-from chromium import chromium
-from page_client import PageClient
 
 SIZES = {'desk': {'width': 1280, 'height': 760}, 'phone': {'width': 390, 'height': 844}}
 TICKS_PER_SECOND = os.sysconf('SC_CLK_TCK')
@@ -33,7 +30,7 @@ FRAMES = """seconds => new Promise(resolve => {
     };
     requestAnimationFrame(next);
 })"""
-DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+DRAWN = '() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))'
 HEAD = """\
 # The viewer
 
@@ -58,8 +55,15 @@ def viewer(bag):
         process.stdout.close()
 
 
+def use_tests():
+    """Let what the tests see pages with be imported."""
+    sys.path.append(str(Path(__file__).resolve().parent.parent / 'test'))
+
+
 def opened(bag):
     """Return the seconds to the URL and to the page with everything in it."""
+    from page_client import PageClient
+
     begin = time.perf_counter()
     with viewer(bag) as (_, url):
         told = time.perf_counter() - begin
@@ -153,6 +157,8 @@ def measured(bag, rounds, seconds):
     told, whole = zip(*(opened(bag) for _ in range(rounds)))
     text = line('its address, in the terminal', told)
     text += line('the page, with all that is in it', whole)
+    from chromium import chromium
+
     if chromium() is None:
         return text
     from playwright.sync_api import sync_playwright
@@ -182,6 +188,7 @@ def main():
     parser.add_argument('--rounds', type=int, default=7)
     parser.add_argument('--seconds', type=float, default=10.0)
     options = parser.parse_args()
+    use_tests()
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder, 'run.mcap')
         subprocess.run([sys.executable, '-m', 'dynsim_ros.cli.simulate', 'sphere_on_spring', '-q',

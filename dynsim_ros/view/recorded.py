@@ -7,7 +7,6 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from viser import Icon
 
 from .catalogue import ENERGY, IMBALANCE
 from .page import Page
@@ -63,7 +62,6 @@ class RecordedPage(Page):
         if now > self._hands_off:
             self._time.value = round(playback.time, 4)
         self._play.label = 'Pause' if playback.is_playing else 'Play'
-        self._play.icon = Icon.PLAYER_PAUSE if playback.is_playing else Icon.PLAYER_PLAY
         energy = self._run.tables.get(ENERGY)
         if energy is not None:
             row = energy.at(playback.time)
@@ -73,7 +71,7 @@ class RecordedPage(Page):
         gui, playback = self.gui, self.playback
         first, last = playback.first, playback.last
         step = max(1e-4, 1e-6 * (last - first))
-        self._play = gui.add_button('Pause', icon=Icon.PLAYER_PAUSE)
+        self._play = gui.add_button('Pause')
         self._time = gui.add_slider('time [s]', first, last, step, first)
         steps = gui.add_button_group('step', ('start', '- tick', '+ tick'))
         speed = gui.add_dropdown('speed', _SPEEDS, initial_value='1')
