@@ -13,7 +13,7 @@ from .plots import Plots
 from .spring_view import COLORS as SPRING_COLORS
 from .stage import Stage
 
-_PLOTS_WIDTH, _CONTROLS_WIDTH = 380, 310
+_PLOTS_WIDTH, _CONTROLS_WIDTH, _LOOKS_HEIGHT = 380, 310, 380
 # How often what is shown is brought up to date [Hz].
 RATE = 30.0
 # Small print stands out enough from what is behind it to be read, also with `?darkMode`.
@@ -99,10 +99,11 @@ class Page:
         """Take note that other plots are shown; for those who derive from it."""
 
     def add_looks(self):
-        """Add the folder in which one chooses what the 3-D view shows."""
+        """Add the panel in which one chooses what the 3-D view shows."""
         stage, gui = self.stage, self.gui
-        # Open: the head of a closed folder cannot be reached by the keyboard.
-        with gui.add_folder('3-D view'):
+        # No folder: its head cannot be reached by the keyboard.
+        panel = gui.add_panel()
+        with panel.add_tab('3-D view'):
             if stage.arrows.kinds:
                 gui.add_html(_legend())
             for kind in stage.arrows.kinds:
@@ -119,6 +120,8 @@ class Page:
             followed = gui.add_dropdown(
                 'follow', ('nothing', *stage.bodies), initial_value=stage.followed or 'nothing')
             self.when(followed, self._follow)
+        panel.dock_below(gui.main_panel)
+        panel.set_height(_LOOKS_HEIGHT)
 
     def _follow(self, name):
         self.stage.followed = None if name == 'nothing' else name

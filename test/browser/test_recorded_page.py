@@ -54,9 +54,13 @@ def test_everything_can_be_reached_by_its_name(page):
         assert page.get_by_role('button', name=name).is_visible()
     for role, name in (('combobox', 'speed'), ('checkbox', 'loop')):
         assert page.get_by_role(role, name=name).is_visible()
+    if page.viewport_size == PHONE:
+        page.get_by_role('button', name='Expand panel 3-D view').click()
     page.get_by_role('checkbox', name='force: spring').wait_for()
     for label in ('time [s]', 'section [s]', 'trail [s]', 'follow'):
         assert page.get_by_text(label, exact=True).first.is_visible()
+    if page.viewport_size == PHONE:
+        page.get_by_role('button', name='Collapse panel 3-D view').click()
 
 
 def test_plays_and_obeys_the_keyboard(page):
@@ -114,7 +118,7 @@ def test_values_under_the_mouse_are_those_of_the_bag(page, bag):
     box.press('Enter')
     wait_for_instant(page, bag, 1.0)
     if page.viewport_size == PHONE:
-        page.get_by_text('plots').locator('visible=true').last.click()
+        page.get_by_role('button', name='Expand panel plots').click()
     page.get_by_role('combobox', name='plots').wait_for()
     over = page.locator('.u-over').first
     over.wait_for()
