@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A live run in a browser: what the mouse does there, the simulation answers."""
 
+from accessibility import faults
 from dynsim_ros.scene import load_scene
 from dynsim_ros.view.space import Space
 import numpy as np
@@ -96,6 +97,10 @@ def test_buttons_and_keys(page, client):
     client.wait(lambda: len(client.heard['sphere/pose']) == heard + 1)
     page.keyboard.press('Space')
     client.more('sphere/pose')
+
+
+def test_names_and_contrasts(page):
+    assert faults(page) == []
 
 
 def test_parameter_is_set_by_typing(page, client):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recorded run in a browser, at the size of a desk and of a phone."""
 
+from accessibility import faults
 from bag_numbers import row
 import numpy as np
 import pytest
@@ -63,6 +64,13 @@ def test_everything_can_be_reached_by_its_name(page):
         page.get_by_role('button', name='Collapse panel 3-D view').click()
 
 
+def test_names_and_contrasts(page):
+    assert faults(page) == []
+    page.evaluate('document.documentElement.dataset.mantineColorScheme = "dark"')
+    assert faults(page) == []
+    page.evaluate('document.documentElement.dataset.mantineColorScheme = "light"')
+
+
 def test_plays_and_obeys_the_keyboard(page):
     changed = ('from => document.querySelector("[role=slider]").getAttribute("aria-valuenow")'
                ' != from')
@@ -82,6 +90,14 @@ def test_plays_and_obeys_the_keyboard(page):
         page.keyboard.press(key)
         page.wait_for_function(changed, arg=before)
         assert shown_time(page) == pytest.approx(time, abs=2e-4)
+    # A section that begins here, and ends up to five hundredths of it on.
+    for key, after, time in (('I', 'Home', 0.1), ('Shift+ArrowRight', 'O', 0.195),
+                             ('End', 'W', 0.195), ('End', 'End', 2.0)):
+        for pressed in (key, after):
+            page.keyboard.press(pressed)
+        page.wait_for_function(
+            'time => Math.abs(document.querySelector("[role=slider]").getAttribute('
+            '"aria-valuenow") - time) < 1e-3', arg=time)
 
 
 def test_scrubbing_moves_the_body(page, bag):
