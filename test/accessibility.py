@@ -7,9 +7,9 @@ from axe_playwright_python.sync_playwright import Axe
 # The success criteria of WCAG 2.2 on the levels A and AA.
 RULES = {'runOnly': ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa']}
 # Parts of viser that have no name and cannot be given one, see docs/viewing.md: sliders, the
-# fields beside them, icons.
+# fields beside them, all fields of a vector but the first, icons.
 NAMELESS = {'aria-input-field-name': '.mantine-Slider-thumb',
-            'label': '.mantine-Slider-root + * input',
+            'label': ':is(.mantine-Slider-root, .mantine-NumberInput-root) + * input',
             'button-name': '.mantine-ActionIcon-root'}
 
 
