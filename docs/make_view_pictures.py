@@ -61,6 +61,7 @@ def steered(page):
     page.get_by_text('real-time factor').wait_for()
     menu = page.get_by_role('combobox', name='parameters')
     menu.fill('spring')
+    menu.press('ArrowDown')
     menu.press('Enter')
     page.wait_for_timeout(8000)
 

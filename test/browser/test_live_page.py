@@ -106,6 +106,7 @@ def test_names_and_contrasts(page):
 def test_parameter_is_set_by_typing(page, client):
     menu = page.get_by_role('combobox', name='parameters')
     menu.fill('spring')
+    menu.press('ArrowDown')
     menu.press('Enter')
     page.get_by_text('stiffness [N/m]').locator('visible=true').wait_for()
     row = page.get_by_text('stiffness [N/m]').locator('xpath=ancestor::*[.//input[@inputmode]][1]')
