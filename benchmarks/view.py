@@ -92,7 +92,8 @@ def played(browser, process, url, size, seconds):
     """Play; return pictures a second, longest gap [ms], messages and kB a second, CPU shares."""
     got = []
     page = browser.new_page(viewport=size)
-    page.on('websocket', lambda socket: socket.on('framereceived', got.append))
+    page.on('websocket', lambda socket: socket.on(
+        'framereceived', lambda data: got.append(len(data))))
     page.goto(url)
     page.get_by_role('alert').get_by_role('button').click()
     page.get_by_role('button', name='Pause').wait_for()
@@ -107,7 +108,7 @@ def played(browser, process, url, size, seconds):
     page.close()
     return {'pictures': len(gaps) / (times[-1] - times[0]) * 1e3,
             'p95': gaps[int(0.95 * len(gaps))], 'longest': gaps[-1],
-            'messages': len(got) / passed, 'kB': sum(map(len, got)) / passed / 1e3, **share}
+            'messages': len(got) / passed, 'kB': sum(got) / passed / 1e3, **share}
 
 
 def cpu(server):
