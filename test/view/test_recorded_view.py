@@ -4,7 +4,7 @@
 
 import re
 import socket
-import time
+from time import monotonic
 from urllib.parse import urlsplit
 from urllib.request import urlopen
 
@@ -216,12 +216,12 @@ def test_cursor_of_the_plots_is_at_the_instant(page, bag):
 
 def test_nothing_is_sent_while_nothing_changes(page, bag):
     shown_at(page, bag, 0.5)
-    last = [page.messages, time.monotonic()]
+    last = [page.messages, monotonic()]
 
     def is_quiet():
         if page.messages != last[0]:
-            last[:] = page.messages, time.monotonic()
-        return time.monotonic() - last[1] > 1.0
+            last[:] = page.messages, monotonic()
+        return monotonic() - last[1] > 1.0
 
     page.wait(is_quiet)
 
