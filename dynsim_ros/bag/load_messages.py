@@ -50,7 +50,10 @@ def indexed(data: np.ndarray, indexes: list[tuple[int, bytes]]) -> Found | None:
     # none from chunk to chunk.
     ends = np.concatenate([[0], starts + (HEAD.size + lengths)])
     nexts = np.concatenate([starts, [len(data)]])
-    if (ends > nexts).any() or not np.isin([base for base, _ in indexes], ends).all():
+    if (ends > nexts).any():
+        return None
+    bases = np.array([base for base, _ in indexes])
+    if (ends[np.searchsorted(ends[:-1], bases)] != bases).any():
         return None
     if any(_hides_messages(data[ends[gap]:nexts[gap]]) for gap in np.flatnonzero(ends < nexts)):
         return None
@@ -96,5 +99,5 @@ def _heads(data, starts):
 
 
 def _found(starts, heads):
-    return Found(heads['channel'], starts + _RECORD.itemsize, heads['length'] - MESSAGE.size,
-                 heads['log_ns'])
+    channel, length, log_ns = (heads[name].copy() for name in ('channel', 'length', 'log_ns'))
+    return Found(channel, starts + _RECORD.itemsize, length - MESSAGE.size, log_ns)
