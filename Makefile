@@ -25,7 +25,7 @@ PARAMETERS = -p record.enable:=true \
 
 .DELETE_ON_ERROR:
 .PHONY: help run view live test test-browser bench bench-quick bench-stability bench-skipping \
-	bench-instructions bench-node bench-bag fuzz-bag rerun-grid soak lint clean stale
+	bench-instructions bench-node bench-bag bench-view fuzz-bag rerun-grid soak lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -45,6 +45,7 @@ help:
 	@echo 'make bench-instructions   run time against error as counts of instructions (needs valgrind); to benchmarks/'
 	@echo 'make bench-node   what the node costs beside a naive one (ten minutes; ARGS=--quick: two); to benchmarks/'
 	@echo 'make bench-bag    a million messages written, read, recovered, and kill -9 in a loop; to benchmarks/'
+	@echo 'make bench-view   how soon and how smoothly a run of 60 s at 1 kHz is shown; to benchmarks/'
 	@echo 'make fuzz-bag     a thousand bags damaged at random and recovered, of each compression'
 	@echo 'make rerun-grid   every scene, method and kind of commands lived again, and a live run of a minute'
 	@echo 'make soak    ten minutes of the node at 1 kHz with two subscribers and 100 commands a second'
@@ -91,6 +92,9 @@ bench-node: $(VENV)/ready_for_benchmarks
 
 bench-bag: $(VENV)/ready_for_tests
 	@exec tools/in_venv python benchmarks/bag.py $(ARGS)
+
+bench-view: $(VENV)/ready_for_tests
+	@exec tools/in_venv python benchmarks/view.py $(ARGS)
 
 fuzz-bag: $(VENV)/ready_for_tests
 	@DYNSIM_FUZZ_ROUNDS=1000 exec tools/in_venv python -m pytest test/bag/recovery/test_fuzzed.py --timeout 1200 $(ARGS)

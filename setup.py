@@ -68,6 +68,7 @@ setup(
             'pybullet>=3.2,<4',
         ],
         'test': [
+            'axe-playwright-python>=0.1.4,<1',
             'catkin_pkg>=1,<2',
             'colcon-common-extensions>=0.3,<1',
             'flake8>=6,<8',

@@ -16,6 +16,7 @@ import tempfile
 import time
 
 from bag_killed import losses, summed_up
+from dynsim_ros.bag import load
 from dynsim_ros.bag.reader import open_bag
 from dynsim_ros.bag.recorder import Recorder
 from dynsim_ros.bag.recovery.recover import recover
@@ -121,6 +122,12 @@ def read_ours(path):
         return sum(1 for _ in bag.messages())
 
 
+def load_ours(path):
+    """Load as arrays by topic, as load() gives them."""
+    run = load(path)
+    return sum(map(len, run.values()))
+
+
 def read_mcap(path):
     """Read with the reader of mcap that uses the index."""
     with open(path, 'rb') as stream:
@@ -216,6 +223,7 @@ def table(folder, messages):
     for by, call in (('dynsim_ros', read_ours), ('mcap', read_mcap),
                      ('mcap, not seeking', read_mcap_through), ('rosbags', read_rosbags)):
         text += line('read', by, path, call)
+    text += line('load as arrays', 'dynsim_ros', path, load_ours)
     size = path.stat().st_size
     damage = {'cut off at 99 %': lambda stream: stream.truncate(size * 99 // 100),
               'damaged in the middle': lambda stream: (

@@ -59,7 +59,10 @@ def at(time):
 def steered(page):
     """Show the parameters of the spring, after some seconds."""
     page.get_by_text('real-time factor').wait_for()
-    page.get_by_text('spring', exact=True).locator('visible=true').last.click()
+    menu = page.get_by_role('combobox', name='parameters')
+    menu.fill('spring')
+    menu.press('ArrowDown')
+    menu.press('Enter')
     page.wait_for_timeout(8000)
 
 

@@ -18,7 +18,7 @@ from numpy.lib.recfunctions import repack_fields
 import yaml
 
 from .load_run import LoadedRun
-from .run_bag import SCENE_ATTACHMENT
+from .run_names import SCENE_ATTACHMENT
 
 # Messages with more numbers are no table; rows that are turned into text at once.
 _MOST_COLUMNS, _ROWS = 200, 65536

@@ -18,7 +18,6 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema, Statistics
 
 from .chunk_content import DamagedChunk, open_chunk
-from .chunk_records import records_of
 from .records import HEAD, MAGIC, MESSAGE, Record, walk
 
 # Messages outside chunks are read in portions of about this many bytes.
@@ -27,18 +26,24 @@ _PORTION = 256 * 1024
 # A footer with what comes behind it: where summary and offsets begin, a checksum, the magic.
 _END = struct.Struct('<BQQQI8s')
 _FOOTER = 20
-# What an index of a chunk, or of an attachment or metadata, begins with.
-_CHUNK_INDEX = struct.Struct('<QQQQ')
-_OFFSET = struct.Struct('<Q')
+# What an index of a chunk begins with, up to the places of its message indexes; what an index of
+# an attachment or metadata begins with.
+_CHUNK_INDEX = struct.Struct('<QQQQI')
+_OFFSET = _LENGTH = struct.Struct('<Q')
 
 
 class Block(NamedTuple):
-    """A stretch of a file that is read at once: first and last log time, first byte, end."""
+    """
+    A stretch of a file that is read at once: first and last log time, first byte, end.
+
+    index_size: how many bytes of message indexes follow it, as far as known.
+    """
 
     start_ns: int
     end_ns: int
     start: int
     end: int
+    index_size: int = 0
 
 
 @dataclass
@@ -79,8 +84,10 @@ def _from_summary(stream: BinaryIO, size: int) -> Index | None:
         if record.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             _declare(index, record.opcode, content)
         elif record.opcode == Opcode.CHUNK_INDEX:
-            start_ns, end_ns, at, length = _CHUNK_INDEX.unpack_from(content)
-            index.blocks.append(Block(start_ns, end_ns, at, at + length))
+            start_ns, end_ns, at, length, places = _CHUNK_INDEX.unpack_from(content)
+            index_size, = _LENGTH.unpack_from(content, _CHUNK_INDEX.size + places)
+            index.blocks.append(Block(start_ns, end_ns, at, at + length,
+                                      min(index_size, max(size - at - length, 0))))
         elif record.opcode == Opcode.ATTACHMENT_INDEX:
             at, = _OFFSET.unpack_from(content)
             index.attachments.append(_record_at(stream, at, size, Opcode.ATTACHMENT))
@@ -189,6 +196,9 @@ class _Scan:
     def _add_chunk(self, record: Record):
         """Take in what a chunk declares and the times of its messages."""
         data = open_chunk(record.read(self._stream))
+        # Imported here: most files have a summary, and need no compiled code to be read.
+        from .chunk_records import records_of
+
         found = records_of(data)
         if found.end != len(data):
             raise DamagedChunk('its records do not fit')

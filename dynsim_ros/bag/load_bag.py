@@ -13,7 +13,7 @@ import numpy as np
 from .load_columns import columns
 from .load_rows import read_rows, Rows
 from .reader import BagError, open_bag
-from .run_bag import RUN_METADATA
+from .run_names import RUN_METADATA
 from ..messages.cdr import decode
 from ..messages.recorded_types import recorded_fields
 from ..scene import did_you_mean

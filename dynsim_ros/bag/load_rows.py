@@ -4,7 +4,12 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Collection, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+import itertools
+import operator
+import os
 from typing import NamedTuple
 
 from mcap.opcode import Opcode
@@ -12,13 +17,23 @@ import numpy as np
 
 from .index import Block
 from .load_column import Column, Rows, SLACK
-from .load_kernel import Found, prepare_finding, room_for
+from .load_messages import Found, indexed, walked
 from .reader import Bag
 from .records import DamagedChunk, HEAD, open_chunk
 from .sources import Source
 
 # Chunks are taken together until they have so many bytes.
 _BATCH = 4 * 1024 * 1024
+# Several cores decompress at once: that needs no Python, nor does it hold it up.
+_WORKERS = min(os.cpu_count() or 1, 8)
+
+
+class Chunk(NamedTuple):
+    """A stretch of a file: where it lies, the records in it, and its message index records."""
+
+    block: Block
+    records: bytes
+    index: bytes
 
 
 class LoadedRows(NamedTuple):
@@ -58,42 +73,52 @@ def read_rows(bag: Bag, topics: Collection[str], low: int, high: int) -> LoadedR
 def _batches(bag: Bag, source: Source, low: int, high: int
              ) -> Iterator[tuple[np.ndarray, Found]]:
     """Yield records as (n,) uint8 and the messages among them, in the order of the file."""
-    chunks: list[tuple[Block, bytes]] = []
+    batch: list[Chunk] = []
     size = 0
-    for block in sorted(source.index.blocks, key=lambda block: block.start):
-        if block.start_ns > high or block.end_ns < low:
-            continue
+    for block, opening in _openings(source, low, high):
         try:
-            chunks.append((block, _records(source, block)))
+            batch.append(opening.result())
         except DamagedChunk as error:
             bag.report_damage(source, block, error)
             continue
-        size += len(chunks[-1][1])
+        size += len(batch[-1].records)
         if size >= _BATCH:
-            yield _messages(bag, source, chunks)
-            chunks, size = [], 0
-    yield _messages(bag, source, chunks)
+            yield _messages(bag, source, batch)
+            batch, size = [], 0
+    if batch:
+        yield _messages(bag, source, batch)
 
 
-def _records(source: Source, block: Block) -> bytes:
-    """Return the records of a stretch of a file, out of their chunk."""
-    source.stream.seek(block.start)
-    content = source.stream.read(block.end - block.start)
+def _openings(source: Source, low: int, high: int) -> Iterator[tuple[Block, Future[Chunk]]]:
+    """Yield the blocks with messages of some times and what opens them, a few ahead."""
+    ahead: deque[tuple[Block, Future[Chunk]]] = deque()
+    with ThreadPoolExecutor(_WORKERS) as pool:
+        for block in sorted(source.index.blocks, key=lambda block: block.start):
+            if block.start_ns > high or block.end_ns < low:
+                continue
+            source.stream.seek(block.start)
+            content = source.stream.read(block.end - block.start)
+            index = source.stream.read(block.index_size)
+            ahead.append((block, pool.submit(_opened, block, content, index)))
+            if len(ahead) > 4 * _WORKERS:
+                yield ahead.popleft()
+        yield from ahead
+
+
+def _opened(block: Block, content: bytes, index: bytes) -> Chunk:
+    """Return a stretch of a file, out of its chunk; raises DamagedChunk."""
     is_chunk = content[:1] == bytes([Opcode.CHUNK])
-    return open_chunk(content[HEAD.size:]) if is_chunk else content
+    return Chunk(block, open_chunk(content[HEAD.size:]) if is_chunk else content, index)
 
 
-def _messages(bag: Bag, source: Source, chunks: list[tuple[Block, bytes]]
-              ) -> tuple[np.ndarray, Found]:
-    """Return the records of some blocks as one array, and the messages among them."""
-    find = prepare_finding()
-    data = bytearray().join([*(records for _, records in chunks), bytes(SLACK)])
-    data = np.frombuffer(data, np.uint8)
-    found, count, start = room_for(len(data)), 0, 0
-    for block, records in chunks:
-        count = find(data, start, start + len(records), found, count)
-        if count < 0:
-            bag.report_damage(source, block, DamagedChunk('its records do not fit'))
-            count = -count - 1
-        start += len(records)
-    return data, Found(*(part[:count] for part in found))
+def _messages(bag: Bag, source: Source, chunks: list[Chunk]) -> tuple[np.ndarray, Found]:
+    """Return the records of some chunks as one array, and the messages among them."""
+    records = [chunk.records for chunk in chunks]
+    data = np.frombuffer(bytearray().join([*records, bytes(SLACK)]), np.uint8)
+    bases = itertools.accumulate(map(len, records), initial=0)
+    found = indexed(data[:-SLACK], [(base, chunk.index) for base, chunk in zip(bases, chunks)])
+    if found is None:
+        found, fit = walked(records)
+        for chunk in itertools.compress(chunks, map(operator.not_, fit)):
+            bag.report_damage(source, chunk.block, DamagedChunk('its records do not fit'))
+    return data, found

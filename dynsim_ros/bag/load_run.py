@@ -11,9 +11,8 @@ import numpy as np
 
 from .load_bag import LoadedBag
 from .load_columns import element_names, vectors
-from .load_commands import Command, command_makers, grouped
 from .reader import BagError
-from .run_bag import PARAMETER_METADATA, SCENE_ATTACHMENT
+from .run_names import PARAMETER_METADATA, SCENE_ATTACHMENT
 from ..scene import did_you_mean, parse_scene, Rigid, Scene
 
 
@@ -78,8 +77,11 @@ class LoadedRun(LoadedBag):
         return parse_scene(self.attachments[SCENE_ATTACHMENT][1].decode())
 
     @cached_property
-    def commands(self) -> list[tuple[int, Command]]:
+    def commands(self) -> list[tuple]:
         """Return [(time [ns], command)] as they took effect: MoveAnchor, PushBody, SetValues."""
+        # Imported here: it takes what simulates, which takes a second to import.
+        from .load_commands import command_makers, grouped
+
         makers = {}
         for name, maker in command_makers(self.scene).items():
             topic = f'{self.info.get("node", "")}/{name}'

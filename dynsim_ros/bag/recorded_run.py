@@ -8,8 +8,9 @@ from collections.abc import Iterator
 import json
 
 from .reader import Bag, BagError
-from .run_bag import CHECKPOINT_ATTACHMENT, full_name, PARAMETER_METADATA, RUN_METADATA
-from .run_bag import SCENE_ATTACHMENT, TOPIC_METADATA
+from .run_bag import full_name
+from .run_names import CHECKPOINT_ATTACHMENT, PARAMETER_METADATA, RUN_METADATA, SCENE_ATTACHMENT
+from .run_names import TOPIC_METADATA
 from ..messages.commands import command_of, command_topics, group_size, GROUP_TOPIC
 from ..messages.commands import PARAMETER_TOPIC
 from ..messages.scene_channels import scene_channels

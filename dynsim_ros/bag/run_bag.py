@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 from .bag_files import BagFiles, NO_LIMITS
 from .recorder import Recorder
+from .run_names import CHECKPOINT_ATTACHMENT, PARAMETER_METADATA, RUN_METADATA, SCENE_ATTACHMENT
+from .run_names import TOPIC_METADATA
 from .. import __version__
 from ..messages.commands import command_messages, recorded_command_topics
 from ..messages.epoch import EPOCH
@@ -19,14 +21,6 @@ from ..messages.qos import COMMAND
 from ..messages.state_hash import STATE_HASH
 from ..scene import get_values, Scene, scene_to_yaml
 from ..simulation.checkpoint import checkpoint
-
-SCENE_ATTACHMENT = 'scene.yaml'
-# From which the run goes on as it did: how it stood when the bag was begun.
-CHECKPOINT_ATTACHMENT = 'checkpoint.json'
-RUN_METADATA = 'dynsim_ros'
-PARAMETER_METADATA = 'parameters'
-# {topic relative to the node: its full name}.
-TOPIC_METADATA = 'topics'
 
 
 class RunBag:

@@ -13,7 +13,7 @@ import time
 
 def main(args=None) -> int:
     """Compile; return 0, or 2 with an error on stderr."""
-    from ..bag.load_kernel import prepare_finding
+    from ..bag.chunk_records import prepare_finding
     from ..bag.pack_rows import prepare_packing
     from ..scene import load_scene
     from ..simulation import Simulator

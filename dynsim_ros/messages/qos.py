@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import yaml
 
@@ -65,6 +66,7 @@ LATCHED = Qos(durability='transient_local', depth=1)
 COMMAND = Qos()
 
 
+@cache
 def offered(text: str) -> Qos | None:
     """
     Return the quality of service that an `offered_qos_profiles` text describes.

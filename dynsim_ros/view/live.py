@@ -7,7 +7,6 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from viser import Icon
 
 from .catalogue import ENERGY, IMBALANCE
 from .grip import Gizmos, Pulls
@@ -131,7 +130,6 @@ class LivePage(Page):
                  'waiting' if self.pace is None else 'paused' if is_still else 'running')
         self._is_paused = is_still or state == 'paused'
         self._pause.label = 'Resume' if self._is_paused else 'Pause'
-        self._pause.icon = Icon.PLAYER_PLAY if self._is_paused else Icon.PLAYER_PAUSE
         parts = [f'**{state}**']
         if self._time is not None:
             parts.append(f't = {self._time:.3f} s')
@@ -163,7 +161,7 @@ class LivePage(Page):
         gui, remote = self.gui, self._remote
         self._is_paused = False
         self._text = gui.add_markdown('waiting for messages')
-        self._pause = gui.add_button('Pause', icon=Icon.PLAYER_PAUSE)
+        self._pause = gui.add_button('Pause')
         self._buttons = gui.add_button_group('run', (_STEP, _RESET, _RECORD))
         self.when_pressed(self._pause, self._toggle_pause)
         actions = {_STEP: self._step, _RESET: self._reset, _RECORD: self._toggle_record,
@@ -183,9 +181,9 @@ class LivePage(Page):
         pull = gui.add_slider('pull [N/m]', 0.0, 5.0 * firmness, 0.05 * firmness, firmness,
                               hint='drag a body: force per distance from the grabbed point')
         self.when(pull, lambda value: setattr(self.pulls, 'stiffness', value))
-        self.add_looks()
         self.parameters = LiveParameters(self, remote, scene_quantities(self.stage.scene),
                                          lambda reason: self._report(False, reason))
+        self.add_looks()
 
     def _toggle_pause(self):
         self._remote.call('pause', not self._is_paused, self._paused)

@@ -30,13 +30,17 @@ class LiveParameters:
         self._waiting = {}
         self._is_asking = False
         self._touched = 0.0
-        folders = {}
+        groups = {}
         for name, unit in self._settable(quantities):
-            folders.setdefault(name.rpartition('.')[0] or 'scene', []).append((name, unit))
-        for label, members in folders.items():
-            with page.gui.add_folder(label, expand_by_default=False):
+            groups.setdefault(name.rpartition('.')[0] or 'scene', []).append((name, unit))
+        menu = page.gui.add_dropdown('parameters', tuple(groups), hint='which ones to set')
+        self._groups = {}
+        for label, members in groups.items():
+            self._groups[label] = page.gui.add_folder(None, visible=label == menu.value)
+            with self._groups[label]:
                 for name, unit in members:
                     self._add(name, unit)
+        page.when(menu, self._choose)
 
     @property
     def is_waiting(self):
@@ -62,6 +66,10 @@ class LiveParameters:
                 control.min, control.max, control.step = low, high, step
                 control.precision = max(0, round(-math.log10(step)))
                 self._show(name, value)
+
+    def _choose(self, chosen):
+        for label, group in self._groups.items():
+            group.visible = label == chosen
 
     def _settable(self, quantities):
         """Yield (name, unit) of what has a control."""

@@ -7,19 +7,23 @@ from __future__ import annotations
 from queue import Empty, SimpleQueue
 import time
 
-from viser import Icon
-
 from .arrows import COLORS as ARROW_COLORS
 from .catalogue import catalogue
 from .plots import Plots
 from .spring_view import COLORS as SPRING_COLORS
 from .stage import Stage
 
-_PLOTS_WIDTH, _CONTROLS_WIDTH = 380, 310
+_PLOTS_WIDTH, _CONTROLS_WIDTH, _LOOKS_HEIGHT = 380, 310, 380
 # How often what is shown is brought up to date [Hz].
 RATE = 30.0
-# Small print is dark enough to be read.
-_STYLE = '<style>:root,:host{--mantine-color-dimmed:#4a5056!important}</style>'
+# Small print stands out enough from what is behind it to be read, also with `?darkMode`; icons are
+# large enough to be hit.
+_STYLE = """<style>
+:root{--mantine-color-dimmed:#4a5056!important}
+:root[data-mantine-color-scheme=dark]{--mantine-color-dimmed:#b8bdc3!important}
+.mantine-Slider-markLabel,.multi-slider-mark-label{color:var(--mantine-color-dimmed)!important}
+.mantine-ActionIcon-root{min-width:26px;min-height:26px}
+</style>"""
 
 
 class Page:
@@ -37,7 +41,8 @@ class Page:
         space.look(server.initial_camera)
         self.stage = Stage(server.scene, scene, space, topics)
         panel = self.gui.add_panel()
-        with panel.add_tab('plots', Icon.CHART_LINE):
+        # Without icons: to look for one in viser's archive of 4285 takes 60 ms.
+        with panel.add_tab('plots'):
             self.plots = Plots(self.gui, catalogue(scene, topics), self.plots_changed)
         panel.dock_left()
         panel.set_width(_PLOTS_WIDTH)
@@ -65,9 +70,9 @@ class Page:
         async def _(_):
             self.later(action)
 
-    def on_key(self, label, key, action):
-        """Have action() done on a key, and as a command of the palette."""
-        @self.gui.add_command(label, hotkey=key).on_trigger
+    def on_key(self, label, key, action, modifier=None):
+        """Have action() done on a key, and as a command of the palette; modifier: 'shift', …."""
+        @self.gui.add_command(label, hotkey=key, modifier=modifier).on_trigger
         async def _(_):
             self.later(action)
 
@@ -99,9 +104,11 @@ class Page:
         """Take note that other plots are shown; for those who derive from it."""
 
     def add_looks(self):
-        """Add the folder in which one chooses what the 3-D view shows."""
+        """Add the panel in which one chooses what the 3-D view shows."""
         stage, gui = self.stage, self.gui
-        with gui.add_folder('3-D view', expand_by_default=False):
+        # No folder: its head cannot be reached by the keyboard.
+        panel = gui.add_panel()
+        with panel.add_tab('3-D view'):
             if stage.arrows.kinds:
                 gui.add_html(_legend())
             for kind in stage.arrows.kinds:
@@ -118,6 +125,8 @@ class Page:
             followed = gui.add_dropdown(
                 'follow', ('nothing', *stage.bodies), initial_value=stage.followed or 'nothing')
             self.when(followed, self._follow)
+        panel.dock_below(gui.main_panel)
+        panel.set_height(_LOOKS_HEIGHT)
 
     def _follow(self, name):
         self.stage.followed = None if name == 'nothing' else name

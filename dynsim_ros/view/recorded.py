@@ -7,7 +7,6 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from viser import Icon
 
 from .catalogue import ENERGY, IMBALANCE
 from .page import Page
@@ -63,7 +62,6 @@ class RecordedPage(Page):
         if now > self._hands_off:
             self._time.value = round(playback.time, 4)
         self._play.label = 'Pause' if playback.is_playing else 'Play'
-        self._play.icon = Icon.PLAYER_PAUSE if playback.is_playing else Icon.PLAYER_PLAY
         energy = self._run.tables.get(ENERGY)
         if energy is not None:
             row = energy.at(playback.time)
@@ -73,13 +71,14 @@ class RecordedPage(Page):
         gui, playback = self.gui, self.playback
         first, last = playback.first, playback.last
         step = max(1e-4, 1e-6 * (last - first))
-        self._play = gui.add_button('Pause', icon=Icon.PLAYER_PAUSE)
+        self._play = gui.add_button('Pause')
         self._time = gui.add_slider('time [s]', first, last, step, first)
         steps = gui.add_button_group('step', ('start', '- tick', '+ tick'))
         speed = gui.add_dropdown('speed', _SPEEDS, initial_value='1')
         repeat = gui.add_checkbox('loop', True)
         section = gui.add_multi_slider('section [s]', first, last, step, (first, last),
                                        min_range=min(10 * step, last - first))
+        self._section = section
         self._text = gui.add_markdown('')
         self.when_pressed(self._play, playback.toggle)
         self.when(self._time, self._seek)
@@ -96,6 +95,13 @@ class RecordedPage(Page):
         self.on_key('one tick back', 'arrowleft', lambda: self._step('- tick'))
         self.on_key('one tick on', 'arrowright', lambda: self._step('+ tick'))
         self.on_key('to the start', 'home', lambda: self._step('start'))
+        self.on_key('to the end', 'end', lambda: playback.seek(playback.end))
+        self.on_key('back by 5 %', 'arrowleft', lambda: self._stride(-0.05), 'shift')
+        self.on_key('on by 5 %', 'arrowright', lambda: self._stride(0.05), 'shift')
+        # A section is chosen by mouse only otherwise.
+        self.on_key('section: from here', 'I', lambda: self._cut(playback.time, playback.end))
+        self.on_key('section: up to here', 'O', lambda: self._cut(playback.start, playback.time))
+        self.on_key('section: the whole run', 'W', lambda: self._cut(first, last))
 
     def _seek(self, value):
         self._hands_off = time.monotonic() + _HANDS_OFF
@@ -104,6 +110,17 @@ class RecordedPage(Page):
     def _choose(self, ends):
         self.playback.choose(*ends)
         self.plots_changed()
+
+    def _cut(self, start, end):
+        """Play only from one time to another [s], unless that is next to nothing."""
+        if end - start >= self._section.min_range:
+            self._section.value = start, end
+            self._choose((start, end))
+
+    def _stride(self, share):
+        """Go on by a share of the section."""
+        playback = self.playback
+        playback.seek(playback.time + share * (playback.end - playback.start))
 
     def _step(self, which):
         playback = self.playback

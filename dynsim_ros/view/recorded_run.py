@@ -7,12 +7,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.recfunctions import structured_to_unstructured
 
 from .server import ViewError
 from .table import NUMBERS, Table
 from ..bag import load
-from ..bag.load_columns import columns
-from ..bag.run_bag import SCENE_ATTACHMENT
+from ..bag.run_names import SCENE_ATTACHMENT
 from ..scene import parse_scene, Scene, SceneError
 
 # What the topics of a run end with: others, such as commands, are of the same types.
@@ -64,9 +64,10 @@ def read_run(path, scene=None):
 
 
 def _numbers(values):
-    """Return the numbers of messages, (n, k), without their headers."""
-    return np.column_stack([column for name, column in columns(values).items()
-                            if not name.startswith('header.')]).astype(float)
+    """Return the numbers of messages, (n, k), without what comes before; not copied."""
+    numbers = values[values.dtype.names[-1]]
+    return np.asarray(structured_to_unstructured(numbers) if numbers.dtype.names else numbers,
+                      float)
 
 
 def _scene(bag):

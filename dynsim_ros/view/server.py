@@ -35,7 +35,7 @@ def serving(host: str, port: int | None, label: str) -> Iterator[viser.ViserServ
     server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
     # To share is to send all that is shown to a server on the internet.
     server.gui.configure_theme(show_logo=False, show_share_button=False,
-                               brand_color=(25, 95, 175))
+                               brand_color=(18, 74, 140))
     server.scene.world_axes.visible = False
     try:
         yield server

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A live run in a browser: what the mouse does there, the simulation answers."""
 
+from accessibility import faults
 from dynsim_ros.scene import load_scene
 from dynsim_ros.view.space import Space
 import numpy as np
@@ -98,9 +99,16 @@ def test_buttons_and_keys(page, client):
     client.more('sphere/pose')
 
 
+def test_names_and_contrasts(page):
+    assert faults(page) == []
+
+
 def test_parameter_is_set_by_typing(page, client):
-    page.get_by_text('spring', exact=True).locator('visible=true').last.click()
-    page.get_by_text('stiffness [N/m]').wait_for()
+    menu = page.get_by_role('combobox', name='parameters')
+    menu.fill('spring')
+    menu.press('ArrowDown')
+    menu.press('Enter')
+    page.get_by_text('stiffness [N/m]').locator('visible=true').wait_for()
     row = page.get_by_text('stiffness [N/m]').locator('xpath=ancestor::*[.//input[@inputmode]][1]')
     box = row.get_by_role('textbox').first
     box.fill('150')

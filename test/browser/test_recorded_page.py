@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recorded run in a browser, at the size of a desk and of a phone."""
 
+from accessibility import faults
 from bag_numbers import row
 import numpy as np
 import pytest
@@ -54,12 +55,19 @@ def test_everything_can_be_reached_by_its_name(page):
         assert page.get_by_role('button', name=name).is_visible()
     for role, name in (('combobox', 'speed'), ('checkbox', 'loop')):
         assert page.get_by_role(role, name=name).is_visible()
-    folder = page.get_by_text('3-D view')
-    folder.click()
+    if page.viewport_size == PHONE:
+        page.get_by_role('button', name='Expand panel 3-D view').click()
     page.get_by_role('checkbox', name='force: spring').wait_for()
     for label in ('time [s]', 'section [s]', 'trail [s]', 'follow'):
         assert page.get_by_text(label, exact=True).first.is_visible()
-    folder.click()
+    if page.viewport_size == PHONE:
+        page.get_by_role('button', name='Collapse panel 3-D view').click()
+
+
+def test_names_and_contrasts(page):
+    for scheme in ('dark', 'light'):
+        page.evaluate(f'document.documentElement.dataset.mantineColorScheme = "{scheme}"')
+        assert faults(page) == []
 
 
 def test_plays_and_obeys_the_keyboard(page):
@@ -75,9 +83,20 @@ def test_plays_and_obeys_the_keyboard(page):
     page.keyboard.press('ArrowRight')
     page.wait_for_function(changed, arg=before)
     assert shown_time(page) - before == pytest.approx(0.005, abs=2e-4)
-    page.keyboard.press('Home')
-    page.wait_for_function(changed, arg=shown_time(page))
-    assert shown_time(page) == 0.0
+    for key, time in (('End', 2.0), ('Shift+ArrowLeft', 1.9), ('Home', 0.0),
+                      ('Shift+ArrowRight', 0.1)):
+        before = shown_time(page)
+        page.keyboard.press(key)
+        page.wait_for_function(changed, arg=before)
+        assert shown_time(page) == pytest.approx(time, abs=2e-4)
+    # A section that begins here, and ends up to five hundredths of it on.
+    for key, after, time in (('I', 'Home', 0.1), ('Shift+ArrowRight', 'O', 0.195),
+                             ('End', 'W', 0.195), ('End', 'End', 2.0)):
+        for pressed in (key, after):
+            page.keyboard.press(pressed)
+        page.wait_for_function(
+            'time => Math.abs(document.querySelector("[role=slider]").getAttribute('
+            '"aria-valuenow") - time) < 1e-3', arg=time)
 
 
 def test_scrubbing_moves_the_body(page, bag):
@@ -114,7 +133,7 @@ def test_values_under_the_mouse_are_those_of_the_bag(page, bag):
     box.press('Enter')
     wait_for_instant(page, bag, 1.0)
     if page.viewport_size == PHONE:
-        page.get_by_text('plots').locator('visible=true').last.click()
+        page.get_by_role('button', name='Expand panel plots').click()
     page.get_by_role('combobox', name='plots').wait_for()
     over = page.locator('.u-over').first
     over.wait_for()

@@ -4,6 +4,7 @@
 
 import re
 import socket
+from time import monotonic
 from urllib.parse import urlsplit
 from urllib.request import urlopen
 
@@ -211,6 +212,18 @@ def test_cursor_of_the_plots_is_at_the_instant(page, bag):
     shown_at(page, bag, 0.5)
     page.wait(lambda: any('left:25.0000%' in props.get('content', '')
                           for props in page.controls.values()))
+
+
+def test_nothing_is_sent_while_nothing_changes(page, bag):
+    shown_at(page, bag, 0.5)
+    last = [page.messages, monotonic()]
+
+    def is_quiet():
+        if page.messages != last[0]:
+            last[:] = page.messages, monotonic()
+        return monotonic() - last[1] > 1.0
+
+    page.wait(is_quiet)
 
 
 def test_ends_well(view, bag):

@@ -7,10 +7,14 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterator
+from io import BytesIO
+import struct
 from typing import BinaryIO
 import zlib
 
 from mcap import records
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
 from .intact import portions
@@ -19,6 +23,7 @@ from .stretches import Hole, stretches, WholeChunk
 from ..gap import MISSING
 from ..records import HEAD, MAGIC, MESSAGE, Record
 from ..summary import ENTRY_SIZE, INDEX_HEAD, Summary
+from ...messages.qos import offered
 
 # How much of the footer's content its checksum covers [bytes].
 _COVERED = 16
@@ -165,10 +170,15 @@ class Survey:
             self._footer = stretch
 
     def _declare(self, opcode, record):
-        """Note a schema or a channel; of two of one id, the first one counts."""
+        """Note a schema or a channel; of two of one id, the first one counts that is sound."""
         key = _id_of(record)
-        if (opcode, key) not in self.declared:
+        known = self.declared.get((opcode, key))
+        if known is None:
             self._set_declared(opcode, key, record)
+        elif known != record and opcode == Opcode.CHANNEL and (
+                _has_sound_qos(record) and not _has_sound_qos(known)):
+            self._set_declared(opcode, key, record)
+            self._is_misdeclared, self.is_cut = True, False
 
     def _set_declared(self, opcode, key, record):
         self.declared[opcode, key] = record
@@ -244,6 +254,16 @@ def whole(stream: BinaryIO, record: Record) -> bytes:
 def _id_of(declared: bytes) -> int:
     """Return the id of a schema or a channel, a whole record."""
     return int.from_bytes(declared[HEAD.size:HEAD.size + 2], 'little')
+
+
+def _has_sound_qos(channel: bytes) -> bool:
+    """Tell whether a channel, a whole record, has no quality of service, or one to be read."""
+    try:
+        found = records.Channel.read(ReadDataStream(BytesIO(channel[HEAD.size:])))
+    except (McapError, struct.error, UnicodeDecodeError):
+        return False
+    text = found.metadata.get('offered_qos_profiles', '')
+    return not text or offered(text) is not None
 
 
 def message_head(stream: BinaryIO, record: Record) -> tuple[int, int]:

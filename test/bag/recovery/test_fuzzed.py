@@ -73,6 +73,20 @@ def test_what_comes_back_is_what_was_there(tmp_path, compression):
             other.unlink()
 
 
+def test_channel_that_is_nonsense_in_one_of_two_places(tmp_path):
+    """Neither has a checksum where the summary is damaged elsewhere: the sound one counts."""
+    path = tmp_path / 'run.mcap'
+    messages = write_sample(path, 40, chunk_size=1500)
+    content = bytearray(path.read_bytes())
+    at = content.index(b'}\n  avoid_ros_namespace_conventions')
+    content[at] = ord('=')
+    (start, _), = places(content, Opcode.STATISTICS)
+    content[start + HEAD.size] ^= 1
+    path.write_bytes(content)
+    assert not recover(path).holes
+    assert Counter(by_rosbags(path)) == Counter(messages)
+
+
 def chunk(compression, data, size, crc=0):
     """Return a chunk that says that it holds so many bytes."""
     content = struct.pack('<QQQI', 0, 9, size, crc) + struct.pack('<I', len(compression))

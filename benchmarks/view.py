@@ -1,0 +1,207 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+How soon `view` shows a recorded run of 60 s at 1 kHz, and how smoothly it plays it.
+
+Usage: python benchmarks/view.py [--rounds N] [--seconds S]. Writes view.md. The browser is a
+headless Chromium without a graphics card; where there is none, its lines are left out.
+"""
+
+import argparse
+from contextlib import contextmanager
+import os
+from pathlib import Path
+import platform
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+
+SIZES = {'desk': {'width': 1280, 'height': 760}, 'phone': {'width': 390, 'height': 844}}
+TICKS_PER_SECOND = os.sysconf('SC_CLK_TCK')
+FRAMES = """seconds => new Promise(resolve => {
+    const times = [];
+    const next = now => {
+        times.push(now);
+        if (now - times[0] < 1000 * seconds) requestAnimationFrame(next); else resolve(times);
+    };
+    requestAnimationFrame(next);
+})"""
+DRAWN = '() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))'
+HEAD = """\
+# The viewer
+
+`make bench-view` (two minutes): `view` of a run of {seconds:g} s at 1 kHz of the default scene,
+{size:.0f} MB, {messages} messages, on {machine}, {date}. Load of the machine beside it: {load}.
+
+| from the command to | median s | least s | most s |
+|---|---|---|---|
+"""
+
+
+@contextmanager
+def viewer(bag):
+    """Run the viewer; give its process, and its URL once it tells it."""
+    process = subprocess.Popen([sys.executable, '-m', 'dynsim_ros.cli.view', bag],
+                               stdout=subprocess.PIPE, text=True, cwd=bag.parent)
+    try:
+        yield process, re.search('open ([^ ]+)', process.stdout.readline()).group(1)
+    finally:
+        process.terminate()
+        process.wait()
+        process.stdout.close()
+
+
+def use_tests():
+    """Let what the tests see pages with be imported."""
+    sys.path.append(str(Path(__file__).resolve().parent.parent / 'test'))
+
+
+def opened(bag):
+    """Return the seconds to the URL and to the page with everything in it."""
+    from page_client import PageClient
+
+    begin = time.perf_counter()
+    with viewer(bag) as (_, url):
+        told = time.perf_counter() - begin
+        page = PageClient(url)
+        whole = time.perf_counter() - begin
+        assert '/world/sphere/dark' in page.nodes and 'energies [J]' in page.controls
+        page.close()
+    return told, whole
+
+
+def drawn(browser, bag):
+    """Return the seconds to the first picture in a browser that is there already."""
+    begin = time.perf_counter()
+    with viewer(bag) as (_, url):
+        page = browser.new_page(viewport=SIZES['desk'])
+        page.goto(url)
+        page.locator('canvas[data-engine]').wait_for()
+        page.locator('.uplot canvas').first.wait_for()
+        page.evaluate(DRAWN)
+        seconds = time.perf_counter() - begin
+        page.close()
+    return seconds
+
+
+def played(browser, process, url, size, seconds):
+    """Play; return pictures a second, longest gap [ms], messages and kB a second, CPU shares."""
+    got = []
+    page = browser.new_page(viewport=size)
+    page.on('websocket', lambda socket: socket.on(
+        'framereceived', lambda data: got.append(len(data))))
+    page.goto(url)
+    page.get_by_role('alert').get_by_role('button').click()
+    page.get_by_role('button', name='Pause').wait_for()
+    page.wait_for_timeout(3000)
+    got.clear()
+    used, begin = cpu(process.pid), time.perf_counter()
+    times = page.evaluate(FRAMES, seconds)
+    passed = time.perf_counter() - begin
+    share = {kind: (spent - used.get(kind, 0.0)) / passed
+             for kind, spent in cpu(process.pid).items()}
+    gaps = sorted(later - earlier for earlier, later in zip(times, times[1:]))
+    page.close()
+    return {'pictures': len(gaps) / (times[-1] - times[0]) * 1e3,
+            'p95': gaps[int(0.95 * len(gaps))], 'longest': gaps[-1],
+            'messages': len(got) / passed, 'kB': sum(got) / passed / 1e3, **share}
+
+
+def cpu(server):
+    """Return {'server', 'page' or 'drawing': CPU time so far [s]} of a server and browsers."""
+    spent = {}
+    for folder in Path('/proc').glob('[0-9]*'):
+        try:
+            command = (folder / 'cmdline').read_text()
+            fields = (folder / 'stat').read_text().rpartition(')')[2].split()
+        except OSError:
+            continue
+        kind = ('server' if int(folder.name) == server else
+                'page' if '--type=renderer' in command else
+                'drawing' if '--type=gpu-process' in command else None)
+        if kind:
+            spent[kind] = spent.get(kind, 0.0) + (
+                int(fields[11]) + int(fields[12])) / TICKS_PER_SECOND
+    return spent
+
+
+def line(what, numbers):
+    """Return a line of the table of seconds."""
+    return (f'| {what} | {statistics.median(numbers):.2f} | {min(numbers):.2f} | '
+            f'{max(numbers):.2f} |\n')
+
+
+def smoothness(browser, bag, seconds):
+    """Return the table of how it plays."""
+    text = ('\nPlayed at the speed of the run, a browser without a graphics card, which draws on '
+            'the same cores:\n\n| size | pictures a second | gap, 95 % [ms] | longest gap [ms] | '
+            'messages a second | kB a second | CPU server / page / drawing |\n'
+            '|---|---|---|---|---|---|---|\n')
+    with viewer(bag) as (process, url):
+        for name, size in SIZES.items():
+            found = played(browser, process, url, size, seconds)
+            shares = ' / '.join(f'{100 * found.get(kind, 0.0):.0f} %'
+                                for kind in ('server', 'page', 'drawing'))
+            text += (f'| {name} | {found["pictures"]:.1f} | {found["p95"]:.0f} | '
+                     f'{found["longest"]:.0f} | {found["messages"]:.1f} | {found["kB"]:.0f} | '
+                     f'{shares} |\n')
+    return text
+
+
+def measured(bag, rounds, seconds):
+    """Return both tables."""
+    opened(bag)
+    told, whole = zip(*(opened(bag) for _ in range(rounds)))
+    text = line('its address, in the terminal', told)
+    text += line('the page, with all that is in it', whole)
+    from chromium import chromium
+
+    if chromium() is None:
+        return text
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=chromium(),
+            args=['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'])
+        drawn(browser, bag)
+        text += line('the first picture in a browser',
+                     [drawn(browser, bag) for _ in range(rounds)])
+        text += smoothness(browser, bag, seconds)
+        browser.close()
+    return text
+
+
+def machine():
+    """Return what this runs on."""
+    found = re.search('model name\t: (.+)', Path('/proc/cpuinfo').read_text(encoding='utf-8'))
+    name = found.group(1) if found else platform.machine()
+    return f'{name}, {len(os.sched_getaffinity(0))} cores'
+
+
+def main():
+    """Measure, print and write the tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--rounds', type=int, default=7)
+    parser.add_argument('--seconds', type=float, default=10.0)
+    options = parser.parse_args()
+    use_tests()
+    with tempfile.TemporaryDirectory() as folder:
+        bag = Path(folder, 'run.mcap')
+        subprocess.run([sys.executable, '-m', 'dynsim_ros.cli.simulate', 'sphere_on_spring', '-q',
+                        '--duration', '60', '--set', 'rate=1000', '--output', bag], check=True)
+        load = os.getloadavg()[0]
+        tables = measured(bag, options.rounds, options.seconds)
+        size = bag.stat().st_size / 1e6
+    text = HEAD.format(seconds=60, size=size, messages='540 000', machine=machine(),
+                       date=time.strftime('%Y-%m-%d'), load=f'{load:.1f}') + tables
+    print(text, end='')
+    Path(__file__).with_suffix('.md').write_text(text, encoding='utf-8')
+
+
+if __name__ == '__main__':
+    main()
