@@ -79,7 +79,7 @@ class LoadedRun(LoadedBag):
 
     @cached_property
     def commands(self) -> list[tuple[int, Command]]:
-        """Return [(time [ns], command)] as they took effect: MoveAnchor, PushBody, SetValues."""
+        """Return [(time [ns], command)] as they took effect: see simulation.commands."""
         makers = {}
         for name, maker in command_makers(self.scene).items():
             topic = f'{self.info.get("node", "")}/{name}'
