@@ -25,8 +25,7 @@ def fill_in(response, code, text=''):
 
 
 def must_succeed(answer, code):
-    """Return the text of (success, text); raise a Refusal with a code if it is no success."""
+    """Raise a Refusal with a code if (success, text) is no success."""
     success, text = answer
     if not success:
         raise Refusal(code, text)
-    return text

@@ -48,7 +48,7 @@ def _callback(answer):
     def callback(request, response):
         code, text = OK, ''
         try:
-            text = answer(request, response) or ''
+            answer(request, response)
         except Refusal as refusal:
             code, text = refusal.code, str(refusal)
         if hasattr(response, 'result'):
@@ -101,7 +101,7 @@ class _Control:
                                        'STATE_PLAYING (1), STATE_PAUSED (2) or STATE_QUITTING (3)')
         if wanted == self._state():
             raise Refusal('ALREADY_IN_TARGET_STATE', f'already so, at {self._run.now()}')
-        return must_succeed(self._changes[wanted](), 'STATE_TRANSITION_ERROR')
+        must_succeed(self._changes[wanted](), 'STATE_TRANSITION_ERROR')
 
     def _pause(self):
         self._stopped = None
@@ -125,7 +125,7 @@ class _Control:
         if self._state() != state.STATE_PAUSED:
             raise Refusal(FAILED, 'not paused: set the simulation state STATE_PAUSED '
                                   f'({state.STATE_PAUSED}) first')
-        return must_succeed(self._services.step(request.steps), FAILED)
+        must_succeed(self._services.step(request.steps), FAILED)
 
     def reset_simulation(self, request, _):
         """Begin anew with all, or with the time or the state alone."""
@@ -136,9 +136,10 @@ class _Control:
             raise Refusal(UNSUPPORTED, f'scope: {scope} is not supported, as nothing is spawned '
                                        'here; give SCOPE_TIME (1), SCOPE_STATE (2) or both')
         if not time:
-            return self._entities.reset_states()
+            self._entities.reset_states()
+            return
         was_stopped = self._state() == msg.SimulationState.STATE_STOPPED
         answer = self._services.reset() if state else self._states.restart_time()
         if was_stopped:
             self._stopped = self._run.simulator.epoch
-        return must_succeed(answer, FAILED)
+        must_succeed(answer, FAILED)
