@@ -3,24 +3,26 @@
 """
 simulation_interfaces, which PyPI lacks, built of its definitions by ROS's own generators.
 
-Of the package in test/interfaces/ come the same classes, and the same bytes on the wire, as of an
-installed one, if its definitions say the same; nothing here is a stand-in but these texts.
+From test/definitions/ come the same classes, and the same bytes on the wire, as from an installed
+package of the same definitions; nothing here stands in for anything but these texts.
 """
 
 import functools
+import hashlib
 from importlib import import_module
 from importlib.util import find_spec
+import os
 from pathlib import Path
 import shutil
 import subprocess
+import sys
 import sysconfig
 
-from ament_index_python import get_package_prefix
-import numpy
-from tree import ROOT
+import pytest
+from tree import output_of, ROOT
 
 PACKAGE = 'simulation_interfaces'
-DEFINITIONS = ROOT / 'test' / 'interfaces' / PACKAGE
+DEFINITIONS = ROOT / 'test' / 'definitions' / PACKAGE
 USED = ('builtin_interfaces', 'std_msgs', 'geometry_msgs', 'service_msgs')
 LIBRARIES = ('rosidl_generator_c', 'rosidl_typesupport_fastrtps_c', 'rosidl_typesupport_c',
              'rosidl_generator_py')
@@ -37,8 +39,34 @@ def can_be_had():
         shutil.which('cc') and shutil.which('c++') and headers.exists())
 
 
+@pytest.fixture(scope='module')
+def standard_types(request, tmp_path_factory):
+    """Let this process and those that it starts find the package; it is built once for a tree."""
+    if find_spec(PACKAGE) is not None:
+        yield
+        return
+    digest = hashlib.sha256(b''.join(path.read_bytes() for path in [Path(__file__), *_texts()]))
+    kept = Path(request.config.rootpath, '.pytest_cache', 'interfaces',
+                f'{PACKAGE}_{sys.implementation.cache_tag}_{digest.hexdigest()[:16]}')
+    if not kept.exists():
+        folder = tmp_path_factory.mktemp('interfaces')
+        output_of([sys.executable, __file__, folder])
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        beside = kept.with_name(f'{kept.name}.{os.getpid()}')
+        shutil.copytree(folder / 'py', beside)
+        beside.rename(kept)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(kept)
+        patch.setenv('PYTHONPATH', f'{kept}{os.pathsep}{os.environ["PYTHONPATH"]}')
+        yield
+
+
+def _texts():
+    return sorted(DEFINITIONS.glob('*/*'))
+
+
 def build(folder):
-    """Return a folder, made within another one, that holds the package."""
+    """Build the package; in the end it is in folder/py."""
     _generate(folder)
     includes = [f'-I{path}' for path in _includes(folder)]
     parts = _units(folder)
@@ -52,7 +80,6 @@ def build(folder):
                     *(f'-L{prefix / "lib"}' for prefix in _prefixes()),
                     *(f'-l{name}' for name in names)], check=True)
     (library.parent / '__init__.py').touch()
-    return folder / 'py'
 
 
 def _generate(folder):
@@ -60,11 +87,12 @@ def _generate(folder):
     parser = import_module('rosidl_parser.parser')
     parser.get_ast_from_idl_string = functools.cache(parser.get_ast_from_idl_string)
     translate = import_module('rosidl_cli.command.translate.api').translate
-    shares = [str(Path(get_package_prefix(name), 'share', name)) for name in USED]
+    shares = [str(path) for prefix in _prefixes() for path in
+              (prefix / 'share' / name for name in USED) if path.exists()]
     idl = translate(
         package_name=PACKAGE, output_format='idl', output_path=folder / 'idl' / PACKAGE,
         interface_files=[f'{DEFINITIONS}:{path.relative_to(DEFINITIONS)}'
-                         for path in sorted(DEFINITIONS.glob('*/*'))])
+                         for path in _texts()])
     for module, generator, options, out in (
             ('rosidl_generator_c', 'GenerateC', {}, 'c'),
             ('rosidl_typesupport_fastrtps_c', 'GenerateFastRTPSCTypesupport', {}, 'c'),
@@ -94,10 +122,17 @@ def _units(folder):
 
 def _prefixes():
     """Return where ROS is."""
+    # Not at the top: what imports this file has yet to set up what ROS reads from the environment.
+    from ament_index_python import get_package_prefix
+
     return {Path(get_package_prefix(name)) for name in (*USED, 'rosidl_typesupport_fastrtps_c')}
 
 
 def _includes(folder):
     places = [prefix / 'include' for prefix in _prefixes()]
     return [folder / 'c', folder / 'c' / PACKAGE, sysconfig.get_path('include'),
-            numpy.get_include(), *places, *(one for place in places for one in place.iterdir())]
+            import_module('numpy').get_include(), *places, *(one for place in places for one in place.iterdir())]
+
+
+if __name__ == '__main__':
+    build(Path(sys.argv[1]))
