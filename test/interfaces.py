@@ -40,18 +40,17 @@ def can_be_had():
 
 
 @pytest.fixture(scope='module')
-def standard_types(request, tmp_path_factory):
-    """Let this process and those that it starts find the package; it is built once for a tree."""
+def standard_types(tmp_path_factory):
+    """Let this process, and those that it starts, find the package; a .venv keeps what is built."""
     if find_spec(PACKAGE) is not None:
         yield
         return
     digest = hashlib.sha256(b''.join(path.read_bytes() for path in [Path(__file__), *_texts()]))
-    kept = Path(request.config.rootpath, '.pytest_cache', 'interfaces',
-                f'{PACKAGE}_{sys.implementation.cache_tag}_{digest.hexdigest()[:16]}')
+    folder = tmp_path_factory.mktemp('interfaces')
+    home = folder if sys.prefix == sys.base_prefix else Path(sys.prefix)
+    kept = home / 'interfaces' / digest.hexdigest()[:16]
     if not kept.exists():
-        folder = tmp_path_factory.mktemp('interfaces')
         output_of([sys.executable, __file__, folder])
-        kept.parent.mkdir(parents=True, exist_ok=True)
         beside = kept.with_name(f'{kept.name}.{os.getpid()}')
         shutil.copytree(folder / 'py', beside)
         beside.rename(kept)
@@ -111,7 +110,7 @@ def _units(folder):
         path.write_text(''.join(f'#include "{source}"\n' for source in sorted(sources)))
         return path
 
-    sources = [path for path in folder.rglob('*.c')]
+    sources = list(folder.rglob('*.c'))
     # These have the same names in them.
     alone = [path for path in sources if path.name.endswith('__description.c')]
     python = [path for path in sources if path.is_relative_to(folder / 'py')]
@@ -131,7 +130,8 @@ def _prefixes():
 def _includes(folder):
     places = [prefix / 'include' for prefix in _prefixes()]
     return [folder / 'c', folder / 'c' / PACKAGE, sysconfig.get_path('include'),
-            import_module('numpy').get_include(), *places, *(one for place in places for one in place.iterdir())]
+            import_module('numpy').get_include(), *places,
+            *(one for place in places for one in place.iterdir())]
 
 
 if __name__ == '__main__':

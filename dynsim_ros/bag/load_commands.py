@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from ..messages.commands import anchor_topic, PARAMETER_TOPIC, push_topic
 from ..scene import Scene
-from ..simulation.commands import MoveAnchor, PlaceBody, PushBody, SetValues, setting
+from ..simulation.commands import MoveAnchor, PlaceBody, PushBody, setting, SetValues
 
 # Where an rcl_interfaces/ParameterValue of each type has its value.
 _VALUES = {1: 'bool_value', 2: 'integer_value', 3: 'double_value', 4: 'string_value',

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from .cdr import decode, encode
 from .channel import header
-from ..simulation.commands import MoveAnchor, PlaceBody, PushBody, SetValues, setting
+from ..simulation.commands import MoveAnchor, PlaceBody, PushBody, setting, SetValues
 
 POINT = 'geometry_msgs/msg/PointStamped'
 WRENCH = 'geometry_msgs/msg/WrenchStamped'

@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which entities the filters of simulation_interfaces let pass: names, categories, tags, places."""
+"""Which entities the filters of simulation_interfaces let pass: by name, category, tag, place."""
 
 import math
 from typing import NamedTuple
@@ -17,7 +17,7 @@ _KINDS = {Particle: 'particle', Sphere: 'sphere', Box: 'box', RigidBody: 'rigid'
 
 
 class Entity(NamedTuple):
-    """A member of a scene as the standard sees it; category: name of a constant of the standard."""
+    """A member of a scene as the standard sees it; category: name of a constant of its own."""
 
     member: object
     category: str

@@ -49,7 +49,7 @@ class StandardEntities:
         response.info.description, response.info.tags = entity.description, [*entity.tags]
 
     def set_entity_state(self, request, _):
-        """Put one where it is to be, moving as it is to move; its acceleration follows from that."""
+        """Put one where it is to be, moving as it is to move; its acceleration follows."""
         member, state = self._known(request.entity).member, request.state
         try:
             check_frame(state.header)

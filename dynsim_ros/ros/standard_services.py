@@ -3,7 +3,7 @@
 """The standard services of simulation_interfaces, where that package is installed."""
 
 from .standard_entities import StandardEntities
-from .standard_results import FAILED, fill_in, OK, must_succeed, Refusal, UNSUPPORTED
+from .standard_results import FAILED, fill_in, must_succeed, OK, Refusal, UNSUPPORTED
 from .. import __version__
 try:
     from simulation_interfaces import msg, srv

@@ -157,3 +157,12 @@ def test_listening_and_steering(client, desk):
     assert steering.returncode == 0, output
     assert 'successful=True' in output and 'paused at tick' in output
     assert client.get('spring.stiffness', 'gravity') == [200.0, 1.62]
+
+
+def test_lock_step(client, desk):
+    process = desk('docs/rerunning.md', 'tools/in_venv python lock_step.py')
+    output, _ = process.communicate(timeout=60)
+    assert process.returncode == 0, output
+    first, *steps = output.splitlines()
+    assert first.startswith('paused at tick ')
+    assert steps == ['tick 10, 0.1 s', 'tick 20, 0.2 s', 'tick 30, 0.3 s']

@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Entities by the filters of simulation_interfaces; without its types, as anything with its names."""
+"""Entities by the filters of simulation_interfaces, without its types: what has their names."""
 
 from types import SimpleNamespace
 

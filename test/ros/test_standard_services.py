@@ -1,6 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""The standard services of simulation_interfaces, as a program that knows no other ones uses them."""
+"""The standard services of simulation_interfaces, as programs use them that know no others."""
 
 from importlib import import_module
 
@@ -279,7 +279,7 @@ def test_all_of_it_is_recorded_and_can_be_lived_again(node, client):
     change(client, PLAYING)
     put(client, 'sphere', entity(client))
     client.more('sphere/pose', 5)
-    client.record(False)
+    node.stop()
     found = []
     for path in node.bags:
         with open_bag(path) as bag:
