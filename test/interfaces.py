@@ -41,7 +41,7 @@ def can_be_had():
 
 @pytest.fixture(scope='module')
 def standard_types(tmp_path_factory):
-    """Let this process, and those that it starts, find the package; a .venv keeps what is built."""
+    """Let this process and those it starts find the package; a .venv keeps what is built."""
     if find_spec(PACKAGE) is not None:
         yield
         return
