@@ -13,6 +13,7 @@ import tempfile
 
 from chromium import chromium, MISSING
 from dds_domain import claim_domain
+import interfaces
 
 ROOT = Path(__file__).resolve().parent.parent
 _DOMAIN, _DOMAIN_MARK = claim_domain()
@@ -32,6 +33,8 @@ def pytest_report_header():
     lines = [f'DDS domain {_DOMAIN}, discovery on this machine only']
     if chromium() is None:
         lines.append(f'the tests in test/browser are left out: {MISSING}')
+    if not interfaces.can_be_had():
+        lines.append(f'those of the standard services are left out: {interfaces.MISSING}')
     return lines
 
 

@@ -4,13 +4,13 @@
 
 from dynsim_ros.bag.run_sink import RunSink
 from dynsim_ros.scene import load_scene
-from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
+from dynsim_ros.simulation import MoveAnchor, PlaceBody, PushBody, SetValues, Simulator
 from dynsim_ros.simulation.offline import OfflineRun
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
 TICK = 10_000_000  # ns, at 100 Hz
-SCRIPTS = ('nothing', 'anchors', 'pushes', 'values', 'everything')
+SCRIPTS = ('nothing', 'anchors', 'pushes', 'values', 'places', 'everything')
 
 
 def script(name, scene, ticks):
@@ -25,8 +25,12 @@ def script(name, scene, ticks):
               (0.5, SetValues({'tolerance': 1e-7, 'step': 0.002, 'rate': 200.0})),
               *((0.6, SetValues({f'{anchor.name}.velocity': (0.0, 0.1, 0.0)}))
                 for anchor in scene.anchors)]
+    turned = {'orientation': (0.0, 0.6, 0.0, 0.8), 'angular_velocity': (0.0, 1.0, 3.0)}
+    places = [(0.35, PlaceBody(body, {'position': (0.1, 0.2, 1.1), 'velocity': (0.0, 0.3, 0.0)})),
+              (0.7, PlaceBody(body, {'velocity': (0.2, 0.0, 0.0), **(
+                  turned if hasattr(scene.bodies[0], 'orientation') else {})}))]
     chosen = {'nothing': [], 'anchors': anchors, 'pushes': pushes, 'values': values,
-              'everything': anchors + pushes + values}[name]
+              'places': places, 'everything': anchors + pushes + values + places}[name]
     return [(round(share * ticks) * TICK, command)
             for share, command in sorted(chosen, key=lambda timed: timed[0])]
 

@@ -78,7 +78,7 @@ class LoadedRun(LoadedBag):
 
     @cached_property
     def commands(self) -> list[tuple]:
-        """Return [(time [ns], command)] as they took effect: MoveAnchor, PushBody, SetValues."""
+        """Return [(time [ns], command)] as they took effect: see simulation.commands."""
         # Imported here: it takes what simulates, which takes a second to import.
         from .load_commands import command_makers, grouped
 

@@ -46,7 +46,7 @@ class RecordedRun:
             raise BagError(f'{bag.path}: what it says about its run is damaged: '
                            f'{type(error).__name__}: {error}') from None
         self.node: str = about.get('node', '/dynsim')
-        scene = self.simulator.scene
+        self._scene = scene = self.simulator.scene
         self.channels = scene_channels(scene, self.simulator.layout, self.node)
         self._commands = {*command_topics(scene), GROUP_TOPIC}
         names = bag.metadata.get(TOPIC_METADATA, {})
@@ -142,7 +142,7 @@ class RecordedRun:
     def _command(self, topic, stamp_ns, parts):
         """Return the command that some messages are, None for one that is not the simulator's."""
         try:
-            command = command_of(topic, parts)
+            command = command_of(topic, parts, self._scene)
         except ValueError as error:
             raise BagError(f'{self.path}: a command of {(stamp_ns - self.origin_ns) / SECOND:.9g} '
                            f's cannot be read: {error}') from None

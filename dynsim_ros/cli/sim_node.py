@@ -31,7 +31,7 @@ tf2_msgs is installed) and, if asked for, /clock
 commands: <anchor>/command (PointStamped), <body>/wrench_command (WrenchStamped),
 parameter_command (rcl_interfaces/Parameter)
 services: ~/pause and ~/record (SetBool), ~/step, ~/step_until, ~/reset, ~/save_state,
-~/load_state and ~/rewind (Trigger)
+~/load_state and ~/rewind (Trigger); also those of simulation_interfaces (if it is installed)
 
 examples:
   sim_node --ros-args -p scene:=double_pendulum_of_spheres -p record.enable:=true

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from .cdr import decode, encode
 from .channel import header
-from ..simulation.commands import MoveAnchor, PushBody, SetValues
+from ..simulation.commands import MoveAnchor, PlaceBody, PushBody, setting, SetValues
 
 POINT = 'geometry_msgs/msg/PointStamped'
 WRENCH = 'geometry_msgs/msg/WrenchStamped'
@@ -49,24 +49,28 @@ def command_messages(command, stamp_ns):
         wrench = {'force': _xyz(command.force), 'torque': _xyz(command.torque)}
         message = {'header': header(stamp_ns), 'wrench': wrench}
         return [(push_topic(command.body), encode(WRENCH, message))]
-    assert isinstance(command, SetValues), command
-    count = len(command.values)
-    group = [(GROUP_TOPIC, encode(GROUP, {'data': count}))] if count > 1 else []
+    if isinstance(command, PlaceBody):
+        values = {f'{command.body}.{part}': value for part, value in command.values.items()}
+    else:
+        assert isinstance(command, SetValues), command
+        values = command.values
+    group = [(GROUP_TOPIC, encode(GROUP, {'data': len(values)}))] if len(values) > 1 else []
     return group + [
         (PARAMETER_TOPIC, encode(PARAMETER, {'name': name, 'value': parameter_value(value)}))
-        for name, value in command.values.items()]
+        for name, value in values.items()]
 
 
-def command_of(topic, messages):
+def command_of(topic, messages, scene):
     """
     Return the command that was recorded as messages, CDR bytes, on one of command_topics.
 
-    Several messages are parameters that were set as a group. Raises ValueError for what is none.
+    Several messages are parameters that were set as a group; those of a body's state, which no
+    parameter is once the run has begun, are where it was put. Raises ValueError for what is none.
     """
     if topic == PARAMETER_TOPIC:
         parameters = [decode(PARAMETER, data) for data in messages]
-        return SetValues({parameter['name']: value_of(parameter['value'])
-                          for parameter in parameters})
+        return setting({parameter['name']: value_of(parameter['value'])
+                        for parameter in parameters}, scene)
     (data,) = messages
     name = topic.partition('/')[0]
     if topic == anchor_topic(name):

@@ -61,13 +61,12 @@ class Commands:
                                             throttle_duration_sec=_THROTTLE)
 
     def _move(self, anchor, header, point):
-        _check_frame(header)
-        self._tell(MoveAnchor(anchor, _numbers(point)))
+        check_frame(header)
+        self._tell(MoveAnchor(anchor, numbers(point)))
 
     def _push(self, body, message):
-        _check_frame(message.header)
-        self._tell(PushBody(body, _numbers(message.wrench.force),
-                            _numbers(message.wrench.torque)))
+        check_frame(message.header)
+        self._tell(PushBody(body, numbers(message.wrench.force), numbers(message.wrench.torque)))
 
     def _tell(self, command):
         """Have a command carried out if it is valid: which names there are never changes."""
@@ -84,11 +83,12 @@ class Commands:
             raise CommandError(result.reason)
 
 
-def _check_frame(header):
+def check_frame(header):
     """Raise CommandError unless a command is in the world frame (or names none)."""
     if header.frame_id not in ('', WORLD):
         raise CommandError(f"frame '{header.frame_id}' is not known; give it in '{WORLD}'")
 
 
-def _numbers(vector):
+def numbers(vector):
+    """Return the components of a vector or point: (3,)."""
     return (vector.x, vector.y, vector.z)

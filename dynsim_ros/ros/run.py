@@ -24,15 +24,17 @@ class Run:
 
     simulator; topics: Topics; clock: ClockPublisher; options: dict of the node's own parameters,
     always up to date; node: the node, for its names and its log; origin_ns: added to simulated
-    time in stamps; waiting: True until it is known, nothing is published before. work: how long
-    the run's thread has been at steps, publishing and recording, by these names [ns]; lost:
-    messages of bags that have ended which are not in them; history: [(paths of its files,
-    simulated time at its beginning [ns])] of the bags that hold how the run came to where it is.
+    time in stamps; waiting: True until it is known, nothing is published before; is_over: to be
+    set where the node is to end. work: how long the run's thread has been at steps, publishing
+    and recording, by these names [ns]; lost: messages of bags that have ended which are not in
+    them; history: [(paths of its files, simulated time at its beginning [ns])] of the bags that
+    hold how the run came to where it is.
     """
 
     def __init__(self, simulator: Simulator, topics, clock, options, node):
         self.simulator = simulator
         self.topics = topics
+        self.is_over = False
         self.bag = None
         self.origin_ns = 0
         self.waiting = False
@@ -56,9 +58,9 @@ class Run:
 
     @property
     def finished(self):
-        """Tell whether the run has lasted as long as it was to last."""
+        """Tell whether the run is over, or has lasted as long as it was to last."""
         duration = self._options['duration']
-        return duration > 0.0 and self.simulator.time_ns >= round(duration * 1e9)
+        return self.is_over or duration > 0.0 and self.simulator.time_ns >= round(duration * 1e9)
 
     def ticks_to_wanted(self):
         """Return how many ticks it is to the next one that somebody waits for, 1 at least."""
@@ -100,6 +102,11 @@ class Run:
     def now(self):
         """Return tick and time, as the services tell them."""
         return f'tick {self.simulator.tick}, {self.simulator.time:.9g} s'
+
+    def epoch(self, problem):
+        """Return epoch, tick and time; problem: why it is not recorded, in one line, or None."""
+        text = f'epoch {self.simulator.epoch}, {self.now()}'
+        return f'{text}; no longer recording: {problem}' if problem else text
 
     def publish(self):
         """Publish and record the present instant."""
@@ -165,7 +172,7 @@ class Run:
         """
         return self._begin_anew(self.simulator.reset)
 
-    def go_on_as(self, simulator, parent, history, begins_bag):
+    def go_on_as(self, simulator, parent=None, history=(), begins_bag=False):
         """
         Go on, in a new epoch, as a Simulator of the same kind of scene; else as reset.
 

@@ -69,20 +69,18 @@ class Services:
     def _step_until(self):
         return self._in_time(lambda: self._stepping.until(self._options['step_until']))
 
-    def reset(self):
-        """Begin a new epoch; return (success, message)."""
-        answer = self._in_time(self._begin_anew)
+    def reset(self, pauses=False):
+        """Begin a new epoch, paused if it is to be or was; return (success, message)."""
+        answer = self._in_time(lambda: self._begin_anew(pauses))
         self._follow_up()
         return answer
 
-    def _begin_anew(self):
+    def _begin_anew(self, pauses):
         failed = self._run.simulator.failure is not None
         problem = self._run.reset()
-        if failed:
-            self._run.paused = False
+        self._run.paused = pauses or self._run.paused and not failed
         self._was_reset()
-        text = f'epoch {self._run.simulator.epoch}, {self._run.now()}'
-        return True, f'{text}; no longer recording: {problem}' if problem else text
+        return True, self._run.epoch(problem)
 
     def _record(self, begins):
         answer = self._in_time(self._begin_bag if begins else self._end_bag)

@@ -24,6 +24,7 @@ from .qos import profile
 from .recovering import Recovering
 from .run import Run
 from .services import Services
+from .standard_services import offer_standard_services
 from .states import States
 from .stepping import Stepping
 from .ticker import Ticker
@@ -110,8 +111,11 @@ class SimNode(Node):
         run, ask, options = self.run, self.ticker.mailbox.ask, self.parameters.own
         states = States(run, ask, options, prepare=self._prepare, resumed=self._resume,
                         goes_on=self._begin_anew, follow_up=self._follow_up)
-        Services(self, run, ask, Stepping(run, is_ending), states, options, resumed=self._resume,
-                 was_reset=self._was_reset, follow_up=self._follow_up)
+        services = Services(self, run, ask, Stepping(run, is_ending), states, options,
+                            resumed=self._resume, was_reset=self._was_reset,
+                            follow_up=self._follow_up)
+        offer_standard_services(self, run, ask, services, states, prepare=self._prepare,
+                                follow_up=self._follow_up)
 
     def begin(self):
         """

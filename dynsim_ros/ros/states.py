@@ -12,6 +12,7 @@ from ..bag.reader import open_bag
 from ..bag.recorded_run import RecordedRun
 from ..bag.rerun import simulator_at
 from ..scene import scene_quantities, SceneError
+from ..simulation.carry_over import begun_anew
 from ..simulation.checkpoint import checkpoint, FORMAT, restored
 from ..simulation.settings import SECOND
 
@@ -96,6 +97,20 @@ class States:
             return False, self._give_up(held, str(error))
         return self._change_over(simulator, path, held.history, held)
 
+    def restart_time(self):
+        """Go on from the present state, in a new epoch, at time 0."""
+        answer = self._ask(self._restart_time)
+        self._follow_up()
+        return answer
+
+    def _restart_time(self):
+        run = self._run
+        if run.simulator.failure is not None:
+            return False, f'{run.simulator.failure}; then call ~/reset'
+        problem = run.go_on_as(begun_anew(run.simulator))
+        self._goes_on()
+        return True, run.epoch(problem)
+
     def _give_up(self, held, reason):
         """Let a held run go on; return the reason, with what could not be done either."""
         try:
@@ -123,8 +138,7 @@ class States:
             problem = run.go_on_as(simulator, parent, history, begins_bag)
             run.paused = not failed and (run.paused if held is None else held.was_paused)
             self._goes_on()
-            text = f'epoch {simulator.epoch}, {run.now()}'
-            return True, f'{text}; no longer recording: {problem}' if problem else text
+            return True, run.epoch(problem)
 
         answer = self._ask(change_over)
         self._follow_up()

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of a scene: time, commands, snapshots."""
 
-from .commands import CommandError, MoveAnchor, PushBody, SetValues
+from .commands import CommandError, MoveAnchor, PlaceBody, PushBody, SetValues
 from .propagator import Propagator
 from .settings import Settings
 from .simulator import DivergenceError, Simulator
 from .snapshot import Energy, Snapshot
 from .trajectory import Trajectory
 
-__all__ = ['CommandError', 'DivergenceError', 'Energy', 'MoveAnchor', 'Propagator', 'PushBody',
-           'SetValues', 'Settings', 'Simulator', 'Snapshot', 'Trajectory']
+__all__ = ['CommandError', 'DivergenceError', 'Energy', 'MoveAnchor', 'PlaceBody', 'Propagator',
+           'PushBody', 'SetValues', 'Settings', 'Simulator', 'Snapshot', 'Trajectory']

@@ -1,11 +1,31 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Another scene that goes on from where a run stands."""
+"""Another scene, or another time, that goes on from where a run stands."""
 
 from .changes import changed
 from .simulator import Simulator
 from ..scene import Rigid
 from ..scene.orientation import to_ros
+
+
+def begun_anew(simulator):
+    """
+    Return a Simulator of the same state, scene and settings, but at time 0.
+
+    Forces act, and anchors are on their way, for as long as they would have been.
+    """
+    now, memory = simulator.time_ns, simulator.copy().memory()
+    anchors = memory['anchors']
+    memory |= {
+        'time_ns': 0, 'tick': 0, 'counted': [0, 0],
+        'push_ends_ns': {body: end - now for body, end in memory['push_ends_ns'].items()},
+        'anchors': {**anchors, 'since_ns': anchors['since_ns'] - now, 'under_way': [
+            (target and (target[0] - now, target[1]),
+             None if commanded is None else commanded - now)
+            for target, commanded in anchors['under_way']]}}
+    other = Simulator(simulator.scene, simulator.settings)
+    other.recall(memory)
+    return other
 
 
 def carried_over(simulator, scene):

@@ -4,11 +4,14 @@
 
 from dataclasses import dataclass, field
 
-from ..scene import did_you_mean, Quantity, Rigid, SceneError
+from ..scene import did_you_mean, Quantity, Rigid, scene_quantities, SceneError
+from ..scene.orientation import from_ros, to_ros
 
 _POSITION = Quantity('m', 'commanded position', 'vector', -1e6, 1e6)
 _FORCE = Quantity('N', 'commanded force', 'vector', -1e9, 1e9)
 _TORQUE = Quantity('N m', 'commanded torque', 'vector', -1e9, 1e9)
+# What PlaceBody can set.
+PLACED = ('position', 'velocity', 'orientation', 'angular_velocity')
 
 
 class CommandError(SceneError):
@@ -33,10 +36,34 @@ class PushBody:
 
 
 @dataclass(frozen=True)
+class PlaceBody:
+    """
+    Put a body into another state at once, in world; what is not given stays as it is.
+
+    values: {'position': (3,) [m], 'velocity': (3,) [m/s], 'orientation': (x, y, z, w),
+    'angular_velocity': (3,) [rad/s]}; the last two of a rigid body only.
+    """
+
+    body: str
+    values: dict = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class SetValues:
     """Change quantities of the scene and settings of the run, all of them or none."""
 
     values: dict = field(default_factory=dict)
+
+
+def setting(values, scene):
+    """Return the command that sets {name: value}, of the state of one body or of no body's."""
+    quantities = scene_quantities(scene)
+    for name in values:
+        if name in quantities and quantities[name].initial:
+            body = name.rpartition('.')[0]
+            return PlaceBody(body, {name.removeprefix(f'{body}.'): value
+                                    for name, value in values.items()})
+    return SetValues(values)
 
 
 def checked(command, scene):
@@ -48,6 +75,8 @@ def checked(command, scene):
             return MoveAnchor(command.anchor, position)
         if isinstance(command, PushBody):
             return _checked_push(command, scene)
+        if isinstance(command, PlaceBody):
+            return _checked_place(command, scene)
     except CommandError:
         raise
     except SceneError as error:
@@ -64,6 +93,22 @@ def _checked_push(command, scene):
         raise CommandError(f'{command.body}: torque {list(push.torque)} N m cannot act on a '
                            'particle, which has no orientation; give a force only')
     return push
+
+
+def _checked_place(command, scene):
+    _must_be_in('body', command.body, [body.name for body in scene.bodies])
+    quantities = scene_quantities(scene)
+    known = [name for name in PLACED if f'{command.body}.{name}' in quantities]
+    values = {}
+    for part, value in command.values.items():
+        name = f'{command.body}.{part}'
+        if part not in known:
+            raise CommandError(f"'{name}' is no part of the state of this body; "
+                               + did_you_mean(part, known))
+        turns = part == 'orientation' and hasattr(value, '__len__') and len(value) == 4
+        value = quantities[name].check(name, from_ros(value) if turns else value)
+        values[part] = to_ros(value) if turns else value
+    return PlaceBody(command.body, values)
 
 
 def _must_be_in(kind, name, known):

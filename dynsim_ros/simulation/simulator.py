@@ -10,7 +10,7 @@ import numpy as np
 
 from .anchors import Anchors
 from .changes import changed
-from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
+from .commands import checked, CommandError, MoveAnchor, PlaceBody, PushBody, SetValues
 from .layout import Layout
 from .rows.kernel import Instants, prepare_rows
 from .settings import SECOND, SETTING_NAMES, Settings
@@ -23,6 +23,7 @@ from ..physics.energies import energies
 from ..physics.model import build_model
 from ..physics.state import initial_state, WORKS
 from ..scene import get_value
+from ..scene.orientation import from_ros
 
 
 # Of a state with larger numbers (SI) than this, energies and forces might not be finite.
@@ -329,6 +330,8 @@ class Simulator:
             self._move_anchor(command)
         elif isinstance(command, PushBody):
             self._push(command)
+        elif isinstance(command, PlaceBody):
+            self._place(command)
         elif isinstance(command, SetValues):
             return self._set_values(command.values)
         else:
@@ -410,6 +413,15 @@ class Simulator:
         if self.settings.wrench_timeout and any((*command.force, *command.torque)):
             timeout = round(self.settings.wrench_timeout * SECOND)
             self._push_ends[command.body] = self.time_ns + max(timeout, 1)
+
+    def _place(self, command):
+        self._begin_here()
+        before = self._energy()
+        for part, value in command.values.items():
+            place = getattr(self.layout, part)(command.body)
+            self._state[place] = from_ros(value) if part == 'orientation' else value
+        # What the body is given so is no error of the integration.
+        self._reference_energy += self._energy() - before
 
     def _end_pushes(self):
         for body in [body for body, end in self._push_ends.items() if end <= self.time_ns]:

@@ -9,8 +9,10 @@ import numpy as np
 
 from .layout import Layout
 from .settings import Settings
+from ..physics.drive import Drive
 from ..physics.energies import energies
 from ..physics.model import Model
+from ..physics.motion import accelerations
 from ..physics.state import WORKS
 from ..physics.wrenches import wrenches
 from ..scene import Scene
@@ -119,6 +121,14 @@ class Snapshot:
         row = self.force_row(kind)
         place = self.layout.angular_velocity(body)
         return row[self.layout.velocity(body)], None if place is None else row[place]
+
+    @cached_property
+    def accelerations(self):
+        """Return linear and angular accelerations in world [m/s^2, rad/s^2], as one such row."""
+        out = np.zeros(self.layout.size)
+        drive = Drive(self.anchors, True if self.scene.anchors else None, self.pushes, None)
+        accelerations(self.model, drive, 0.0, self.state, out)
+        return out
 
     @cached_property
     def energy(self):

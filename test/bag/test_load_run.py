@@ -9,13 +9,14 @@ from dynsim_ros.bag import load
 from dynsim_ros.bag.reader import BagError
 from dynsim_ros.cli.simulate import main
 from dynsim_ros.scene import load_scene, with_values
-from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
+from dynsim_ros.simulation import MoveAnchor, PlaceBody, PushBody, SetValues, Simulator
 from loaded import plain
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 import numpy as np
 import pandas
 import pytest
+from recorded import record, TICK
 
 COMMANDS = """
 - {time: 0.1, anchor: hand, position: [0.2, 0, 2]}
@@ -105,6 +106,15 @@ def test_scene_parameters_and_commands(run, path):
     assert run.left_out.keys() == OF_VARYING_SIZE
     assert run.left_out['/dynsim/parameter_command'] == (
         'they have 64 to 88 bytes, get them one by one by messages()')
+
+
+def test_bodies_that_were_put_elsewhere(tmp_path):
+    """At one tick with what was set, and with each other: each is a command of its own."""
+    made = [(2 * TICK, command) for command in (
+        PlaceBody('upper', {'position': [0.1, 0.0, 1.5], 'orientation': [0.0, 0.6, 0.0, 0.8]}),
+        PlaceBody('lower', {'velocity': [0.0, 0.2, 0.0]}), SetValues({'gravity': 1.62}))]
+    record(tmp_path / 'run.mcap', 'double_pendulum_of_spheres', 5, made, integrator='rk4')
+    assert load(tmp_path / 'run.mcap').commands == made
 
 
 def test_what_has_no_orientation(tmp_path, run):

@@ -43,7 +43,7 @@ def said(capsys, status, *arguments):
 
 def test_identical(bag, capsys):
     (line,) = said(capsys, 0, bag)
-    assert re.fullmatch(r'identical, 91 states \(2 hashes, 9 commands; 0\.6 s lived again in '
+    assert re.fullmatch(r'identical, 91 states \(2 hashes, 11 commands; 0\.6 s lived again in '
                         r'\d+\.\d\d s\)', line)
     assert said(capsys, 0, bag, '--quiet') == []
     (line,) = said(capsys, 0, bag, '--from', '0.1', '--until', '0.2')

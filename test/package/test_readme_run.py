@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pages: what they say to run, by running it; what they say of the node, by asking it."""
 
+from importlib.util import find_spec
 import os
 import re
 import signal
@@ -130,6 +131,10 @@ def test_topics_commands_and_services(client):
     # the parameter services are mentioned, not listed
     assert column(services) == {
         name: kind for name, kind in offered.items() if 'std_srvs' in kind}
+    # the standard ones come with their types alone, see test/ros/test_standard_services.py
+    (standard,) = tables('standard service', NODE)
+    assert {name: kind for name, kind in offered.items() if 'simulation_interfaces' in kind} == (
+        column(standard) if find_spec('simulation_interfaces') else {})
 
 
 def test_diagnostics(client):
@@ -152,3 +157,12 @@ def test_listening_and_steering(client, desk):
     assert steering.returncode == 0, output
     assert 'successful=True' in output and 'paused at tick' in output
     assert client.get('spring.stiffness', 'gravity') == [200.0, 1.62]
+
+
+def test_lock_step(client, desk):
+    process = desk('docs/rerunning.md', 'tools/in_venv python lock_step.py')
+    output, _ = process.communicate(timeout=60)
+    assert process.returncode == 0, output
+    first, *steps = output.splitlines()
+    assert first.startswith('paused at tick ')
+    assert steps == ['tick 10, 0.1 s', 'tick 20, 0.2 s', 'tick 30, 0.3 s']

@@ -9,7 +9,7 @@ import sys
 from by_hand import nothing_compiled
 from dynsim_ros.integrators import METHODS
 from dynsim_ros.scene import load_scene, parse_scene, scene_names
-from dynsim_ros.simulation import MoveAnchor, PushBody, SetValues, Simulator
+from dynsim_ros.simulation import MoveAnchor, PlaceBody, PushBody, SetValues, Simulator
 from dynsim_ros.simulation.checkpoint import checkpoint, CheckpointError, restored
 from dynsim_ros.simulation.state_hash import state_hash
 from dynsim_ros.simulation.step_memory import recall, remember
@@ -33,6 +33,7 @@ def commands_for(scene):
     """Return [(tick, command)] of every kind that a scene takes."""
     body = scene.bodies[0].name
     commands = [(0, PushBody(body, (0.0, 0.1, 0.2))), (3, PushBody(body, (1.0, 2.0, 3.0))),
+                (6, PlaceBody(body, {'velocity': (0.1, 0.0, 0.2)})),
                 (9, SetValues({'rate': 200.0, 'wrench_timeout': 0.0})),
                 (14, PushBody(body, (0.0, -1.0, 0.0)))]
     for anchor in scene.anchors:

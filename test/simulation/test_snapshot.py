@@ -30,6 +30,22 @@ def test_net_wrench_is_the_sum_and_agrees_with_newton_euler(name):
             np.testing.assert_allclose(sum(part[1] for part in parts), net_torque, atol=1e-14)
 
 
+@pytest.mark.parametrize('name', scene_names())
+def test_accelerations_are_how_fast_velocities_change(name):
+    scene, dt = load_scene(name), 1e-5
+    simulator = Simulator(scene, integrator='rk4', step=dt / 2, rate=1e4)
+    simulator.run(0.1)
+    now = simulator.snapshot()
+    later = simulator.copy()
+    later.advance(round(dt * 1e9))
+    rate = (later.snapshot().state - now.state) / dt
+    for body in scene.bodies:
+        for place in (now.layout.velocity(body.name), now.layout.angular_velocity(body.name)):
+            if place is not None:
+                np.testing.assert_allclose(now.accelerations[place], rate[place], atol=0.05,
+                                           rtol=1e-3)
+
+
 def test_energies_of_a_known_state():
     """The sphere scene at its start, by hand."""
     scene = load_scene('sphere_on_spring')
