@@ -3,8 +3,10 @@
 """Which messages are due at which ticks, and which of them somebody wants."""
 
 from collections import Counter
+from collections.abc import Callable
 from typing import NamedTuple
 
+from .sending import Sending
 from ..messages.tick_rows import TickRows, Wanted
 
 
@@ -12,12 +14,13 @@ class Due(NamedTuple):
     """
     What to build at a tick.
 
-    rows: Wanted; heard: [(row number, publisher)] of those to publish; others: [(channel,
-    publisher)] of what is no row, the publisher None where nobody listens; count: of messages.
+    rows: Wanted; send: function that publishes those that are heard, None where none is; others:
+    [(channel, publisher)] of what is no row, the publisher None where nobody listens; count: of
+    messages.
     """
 
     rows: Wanted
-    heard: list
+    send: Callable | None
     others: list
     count: int
 
@@ -28,11 +31,12 @@ class Schedule:
 
     every: after how many ticks each of channels and publishers has a message, 0 for never; heard:
     whether anybody listens; recording: whether all is wanted; made_for: what it was worked out
-    for; rows: TickRows of the channels. wanted: [(channel, publisher, every so many ticks)] of
-    what is built, the publisher None where nobody listens.
+    for; rows: TickRows of the channels; sending: how they are published. wanted: [(channel,
+    publisher, every so many ticks)] of what is built, the publisher None where nobody listens.
     """
 
-    def __init__(self, channels, publishers, every, heard, recording, made_for, rows: TickRows):
+    def __init__(self, channels, publishers, every, heard, recording, made_for, rows: TickRows,
+                 sending: Sending):
         self.made_for = made_for
         self.wanted = [(channel, publisher if listens else None, ticks)
                        for channel, publisher, listens, ticks
@@ -40,7 +44,7 @@ class Schedule:
                        if ticks and (listens or recording)]
         self._intervals = sorted({ticks for _, _, ticks in self.wanted})
         self._due = list(Counter(filter(None, every)).items())
-        self._rows = rows
+        self._rows, self._sending = rows, sending
         self._built = {}
 
     def ticks_to_wanted(self, tick):
@@ -67,7 +71,7 @@ class Schedule:
         heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
                  if publisher is not None]
         others = [(channel, publisher) for channel, publisher in due if channel.row is None]
-        return Due(rows, heard, others, len(due))
+        return Due(rows, self._sending.of(heard) if heard else None, others, len(due))
 
     def due_between(self, first, last):
         """Return how many messages are due at the ticks first + 1 to last, wanted or not."""
