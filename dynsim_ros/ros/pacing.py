@@ -86,8 +86,8 @@ class Pacer:
     def _give_up(self, now, time_ns, tick_ns, wanted):
         """Give up the ticks that are too late; return how late what is wanted was [ns]."""
         lag = now - min(self.deadline(time_ns + wanted * tick_ns), self._latest)
-        excess = int((lag - self.longest_lag) * self.factor) // tick_ns
-        if excess > 0:
+        if lag > self.longest_lag:
+            excess = int((lag - self.longest_lag) * self.factor) // tick_ns
             self.missed += excess
             self._time_start -= excess * tick_ns
         return lag

@@ -16,13 +16,14 @@ class Due(NamedTuple):
 
     rows: Wanted; send: function that publishes those that are heard, None where none is; others:
     [(channel, publisher)] of what is no row, the publisher None where nobody listens; count: of
-    messages.
+    messages; skipped: how many are due, but not wanted.
     """
 
     rows: Wanted
     send: Callable | None
     others: list
     count: int
+    skipped: int
 
 
 class Schedule:
@@ -44,6 +45,7 @@ class Schedule:
                        if ticks and (listens or recording)]
         self._intervals = sorted({ticks for _, _, ticks in self.wanted})
         self._due = list(Counter(filter(None, every)).items())
+        self._longer = [ticks for ticks, _ in self._due if ticks > 1]
         self._rows, self._sending = rows, sending
         self._built = {}
 
@@ -58,10 +60,11 @@ class Schedule:
     def due(self, tick):
         """Return the Due of a tick."""
         # The same at all ticks at which the same intervals end.
-        ends = tuple(tick % ticks == 0 for ticks in self._intervals)
-        if ends not in self._built:
-            self._built[ends] = self._work_out(tick)
-        return self._built[ends]
+        ends = tuple([tick % ticks == 0 for ticks in self._longer])
+        due = self._built.get(ends)
+        if due is None:
+            due = self._built[ends] = self._work_out(tick)
+        return due
 
     def _work_out(self, tick):
         due = [(channel, publisher) for channel, publisher, ticks in self.wanted
@@ -71,7 +74,8 @@ class Schedule:
         heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
                  if publisher is not None]
         others = [(channel, publisher) for channel, publisher in due if channel.row is None]
-        return Due(rows, self._sending.of(heard) if heard else None, others, len(due))
+        return Due(rows, self._sending.of(heard) if heard else None, others, len(due),
+                   self.due_between(tick - 1, tick) - len(due))
 
     def due_between(self, first, last):
         """Return how many messages are due at the ticks first + 1 to last, wanted or not."""

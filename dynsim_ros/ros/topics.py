@@ -83,9 +83,7 @@ class Topics:
 
         Returns the Wanted rows, which `rows` holds now, and {topic: CDR bytes} of other messages.
         """
-        tick = simulator.tick
-        schedule = self.schedule(simulator.settings.tick_ns, recording)
-        due = schedule.due(tick)
+        due = self.schedule(simulator.settings.tick_ns, recording).due(simulator.tick)
         if due.rows.numbers:
             self.rows.fill(simulator.instant(), stamp_ns, due.rows)
         if due.send is not None:
@@ -96,7 +94,7 @@ class Topics:
             if publisher is not None:
                 publisher.publish(data)
         self.built += due.count
-        self.skipped += schedule.due_between(tick - 1, tick) - due.count
+        self.skipped += due.skipped
         return due.rows, others
 
 
