@@ -71,6 +71,12 @@ class Pacer:
             self.is_up_to_date()
         return due, 0
 
+    def left(self, time_ns, tick_ns, wanted):
+        """Return how long there is nothing to do [ns of the clock] where nothing is due now."""
+        if self.factor == 0.0:
+            return 0
+        return max(min(self.deadline(time_ns + wanted * tick_ns), self._latest) - self.now(), 0)
+
     def due_before(self, instant, time_ns, tick_ns, wanted):
         """
         Return how many ticks are due by an instant, not after now [ns of the clock].

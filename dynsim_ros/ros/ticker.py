@@ -86,6 +86,9 @@ class Ticker:
         due, left = self._pacer.due(simulator.time_ns, simulator.settings.tick_ns, wanted)
         if due > 0 and self._advance(due, wanted, time.monotonic_ns() + BATCH):
             self._pacer.is_up_to_date()
+            simulator = self._run.simulator
+            left = self._pacer.left(simulator.time_ns, simulator.settings.tick_ns,
+                                    self._run.ticks_to_wanted())
         return left / SECOND
 
     def _goes_on(self):

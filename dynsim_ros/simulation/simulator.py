@@ -12,6 +12,7 @@ from .anchors import Anchors
 from .changes import changed
 from .commands import checked, CommandError, MoveAnchor, PushBody, SetValues
 from .layout import Layout
+from .look_ahead import known_until
 from .rows.kernel import Instants, prepare_rows
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
@@ -29,6 +30,8 @@ from ..scene import get_value
 _LARGEST = 1e100
 # Ticks that are computed in one go: they take some memory.
 MOST_AT_ONCE = 1024
+# Single ticks are computed so many ahead, at least and at most, where no step is needed for them.
+_FEWEST_AHEAD, _MOST_AHEAD = 3, 16
 
 
 class DivergenceError(ArithmeticError):
@@ -76,6 +79,8 @@ class Simulator:
         self._steps = None
         # In which state the motion that now goes on began, if it has begun.
         self._begun_in, self._is_begun = None, False
+        # States at the next ticks, the last one first, as far as they are known by now.
+        self._ahead = []
 
     def _begin_steps(self):
         """Let the integration begin at the present instant, under what is in force."""
@@ -234,13 +239,29 @@ class Simulator:
         other = copy.copy(self)
         other._state, other._pushes = self._state.copy(), self._pushes.copy()
         other._push_ends, other._anchors = dict(self._push_ends), copy.deepcopy(self._anchors)
-        other._steps, other._is_begun = None, False
+        other._steps, other._is_begun, other._ahead = None, False, []
         return other
 
     def advance_tick(self):
         """Advance by one tick; raise DivergenceError if the motion is no longer finite."""
-        self.advance(self.settings.tick_ns)
+        if self._ahead:
+            self._state = self._ahead.pop()
+            self.time_ns += self.settings.tick_ns
+        else:
+            self.advance(self.settings.tick_ns)
+            self._look_ahead()
         self.tick += 1
+
+    def _look_ahead(self):
+        """Compute the states at the next ticks, if the last step has gone past some of them."""
+        tick_ns = self.settings.tick_ns
+        known = (known_until(self._steps) - self.time_ns) // tick_ns
+        count = min(self._count_even(known), _MOST_AHEAD)
+        if count >= _FEWEST_AHEAD:
+            states = np.empty((count, self.layout.size))
+            self._steps.fill(self.time_ns + tick_ns, tick_ns, states, self._next_change())
+            if _is_finite(states.ravel()):
+                self._ahead = list(states[::-1])
 
     def advance_ticks(self, count):
         """
@@ -277,6 +298,7 @@ class Simulator:
             return 0
         if not self._is_begun:
             self._begin_steps()
+        self._ahead = []
         tick_ns = self.settings.tick_ns
         states = np.full((count, self.layout.size), np.nan)
         problem = None
@@ -350,6 +372,7 @@ class Simulator:
         """Take steps until an instant has been reached or passed; change: see _next_change."""
         if not self._is_begun:
             self._begin_steps()
+        self._ahead = []
         try:
             state = self._steps.state_at(end, change)
         except IntegrationError as error:
@@ -385,7 +408,7 @@ class Simulator:
         """Let a step end at the present instant: what follows is under something new."""
         if self._is_begun:
             self._state = self._steps.cut(self.time_ns)
-            self._is_begun = False
+            self._is_begun, self._ahead = False, []
         self._anchors.rebase(self.time_ns)
 
     def _move_anchor(self, command):
