@@ -110,8 +110,8 @@ class Together:
             message.buffer = self._block.ctypes.data + start
             message.length = message.capacity = end - start
         first, size = ctypes.addressof(self._messages), ctypes.sizeof(_Message)
-        self._arguments = (rcl.publish,
-                           np.array([publisher.handle.pointer for _, publisher in pairs], np.int64),
+        publishers = [publisher.handle.pointer for _, publisher in pairs]
+        self._arguments = (rcl.publish, np.array(publishers, np.int64),
                            np.arange(len(pairs), dtype=np.int64) * size + first)
         self._publish = prepare_sending()
 

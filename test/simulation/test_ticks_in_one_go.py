@@ -49,7 +49,7 @@ def test_every_method(method):
 
 @pytest.mark.parametrize('scene', ['sphere_on_spring', 'particle_on_spring', 'spinning_box'])
 def test_looking_ahead_changes_nothing(scene):
-    """Run single ticks, and instants for which nothing is looked ahead; all that is kept is alike."""
+    """Run ticks, and instants for which nothing is looked ahead; all that is kept is alike."""
     found = []
     for ahead in True, False:
         simulator = Simulator(load_scene(scene), rate=1000.0, anchor_interpolation='linear')
