@@ -3,7 +3,8 @@
 """
 Microseconds to build and publish the six messages of a tick, nobody listening, in one process.
 
-The naive node's publish() beside the channels and publishers of dynsim_ros; without stepping.
+The naive node's publish() beside the topics of dynsim_ros, as if somebody listened; without
+stepping.
 """
 
 import json
@@ -21,28 +22,35 @@ def measure(rounds):
     return json.loads(done.stdout)
 
 
+class AllListen:
+    """As Audience, where somebody listens to every publisher."""
+
+    version = 0
+
+    def of(self, create):
+        return create(None)
+
+    def hears(self, publisher):
+        return True
+
+
 def ours(node, topics):
     """Return a function that builds and publishes a tick of the default scene."""
     from dynsim_ros.messages.scene_channels import scene_channels
-    from dynsim_ros.ros.message_types import message_class
-    from dynsim_ros.ros.qos import profile
+    from dynsim_ros.messages.tick_rows import TickRows
+    from dynsim_ros.ros.own_parameters import OWN
+    from dynsim_ros.ros.topics import Topics
     from dynsim_ros.scene import load_scene
     from dynsim_ros.simulation import Simulator
 
-    simulator = Simulator(load_scene('sphere_on_spring'))
+    simulator = Simulator(load_scene('sphere_on_spring'), rate=1000.0)
     simulator.advance_tick()
-    pairs = [(channel.encode, node.create_publisher(
-                message_class(channel.type_name), channel.topic, profile(channel.qos)).publish)
-             for channel in scene_channels(simulator.scene, simulator.layout)
-             if channel.topic in topics]
-    assert len(pairs) == len(topics)
-    snapshot = simulator.snapshot()
-
-    def tick():
-        for encode, publish in pairs:
-            publish(encode(snapshot, 123_456_789))
-
-    return tick
+    channels = [channel for channel in scene_channels(simulator.scene, simulator.layout)
+                if channel.topic in topics]
+    assert len(channels) == len(topics)
+    published = Topics(node, channels, TickRows(channels, simulator.layout), AllListen(),
+                       {name: own.default for name, own in OWN.items()})
+    return lambda: published.publish(simulator, 123_456_789, recording=False)
 
 
 def main():

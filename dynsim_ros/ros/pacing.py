@@ -71,6 +71,12 @@ class Pacer:
             self.is_up_to_date()
         return due, 0
 
+    def left(self, time_ns, tick_ns, wanted):
+        """Return how long there is nothing to do [ns of the clock] where nothing is due now."""
+        if self.factor == 0.0:
+            return 0
+        return max(min(self.deadline(time_ns + wanted * tick_ns), self._latest) - self.now(), 0)
+
     def due_before(self, instant, time_ns, tick_ns, wanted):
         """
         Return how many ticks are due by an instant, not after now [ns of the clock].
@@ -86,8 +92,8 @@ class Pacer:
     def _give_up(self, now, time_ns, tick_ns, wanted):
         """Give up the ticks that are too late; return how late what is wanted was [ns]."""
         lag = now - min(self.deadline(time_ns + wanted * tick_ns), self._latest)
-        excess = int((lag - self.longest_lag) * self.factor) // tick_ns
-        if excess > 0:
+        if lag > self.longest_lag:
+            excess = int((lag - self.longest_lag) * self.factor) // tick_ns
             self.missed += excess
             self._time_start -= excess * tick_ns
         return lag

@@ -3,8 +3,10 @@
 """Which messages are due at which ticks, and which of them somebody wants."""
 
 from collections import Counter
+from collections.abc import Callable
 from typing import NamedTuple
 
+from .sending import Sending
 from ..messages.tick_rows import TickRows, Wanted
 
 
@@ -12,14 +14,16 @@ class Due(NamedTuple):
     """
     What to build at a tick.
 
-    rows: Wanted; heard: [(row number, publisher)] of those to publish; others: [(channel,
-    publisher)] of what is no row, the publisher None where nobody listens; count: of messages.
+    rows: Wanted; send: function that publishes those that are heard, None where none is; others:
+    [(channel, publisher)] of what is no row, the publisher None where nobody listens; count: of
+    messages; skipped: how many are due, but not wanted.
     """
 
     rows: Wanted
-    heard: list
+    send: Callable | None
     others: list
     count: int
+    skipped: int
 
 
 class Schedule:
@@ -28,11 +32,12 @@ class Schedule:
 
     every: after how many ticks each of channels and publishers has a message, 0 for never; heard:
     whether anybody listens; recording: whether all is wanted; made_for: what it was worked out
-    for; rows: TickRows of the channels. wanted: [(channel, publisher, every so many ticks)] of
-    what is built, the publisher None where nobody listens.
+    for; rows: TickRows of the channels; sending: how they are published. wanted: [(channel,
+    publisher, every so many ticks)] of what is built, the publisher None where nobody listens.
     """
 
-    def __init__(self, channels, publishers, every, heard, recording, made_for, rows: TickRows):
+    def __init__(self, channels, publishers, every, heard, recording, made_for, rows: TickRows,
+                 sending: Sending):
         self.made_for = made_for
         self.wanted = [(channel, publisher if listens else None, ticks)
                        for channel, publisher, listens, ticks
@@ -40,7 +45,8 @@ class Schedule:
                        if ticks and (listens or recording)]
         self._intervals = sorted({ticks for _, _, ticks in self.wanted})
         self._due = list(Counter(filter(None, every)).items())
-        self._rows = rows
+        self._longer = [ticks for ticks, _ in self._due if ticks > 1]
+        self._rows, self._sending = rows, sending
         self._built = {}
 
     def ticks_to_wanted(self, tick):
@@ -54,10 +60,11 @@ class Schedule:
     def due(self, tick):
         """Return the Due of a tick."""
         # The same at all ticks at which the same intervals end.
-        ends = tuple(tick % ticks == 0 for ticks in self._intervals)
-        if ends not in self._built:
-            self._built[ends] = self._work_out(tick)
-        return self._built[ends]
+        ends = tuple([tick % ticks == 0 for ticks in self._longer])
+        due = self._built.get(ends)
+        if due is None:
+            due = self._built[ends] = self._work_out(tick)
+        return due
 
     def _work_out(self, tick):
         due = [(channel, publisher) for channel, publisher, ticks in self.wanted
@@ -67,7 +74,8 @@ class Schedule:
         heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
                  if publisher is not None]
         others = [(channel, publisher) for channel, publisher in due if channel.row is None]
-        return Due(rows, heard, others, len(due))
+        return Due(rows, self._sending.of(heard) if heard else None, others, len(due),
+                   self.due_between(tick - 1, tick) - len(due))
 
     def due_between(self, first, last):
         """Return how many messages are due at the ticks first + 1 to last, wanted or not."""

@@ -23,6 +23,7 @@ from .parameters import Parameters, refused
 from .qos import profile
 from .recovering import Recovering
 from .run import Run
+from .sending import prepare_sending
 from .services import Services
 from .standard_services import offer_standard_services
 from .states import States
@@ -61,7 +62,8 @@ class SimNode(Node):
         self.parameters = Parameters(self)
         simulator = Simulator(self.parameters.scene, self.parameters.settings)
         simulator.prepare()
-        # A recording that is asked for later begins at once, too.
+        # Who begins to listen, or to record, later on does not wait for it.
+        prepare_sending()
         prepare_packing()
         self.audience = Audience(lambda: self.ticker.mailbox.wake())
         self._clock_publisher = ClockPublisher(self, self.audience)

@@ -82,11 +82,13 @@ class Ticker:
         self._carry_out()
         if not self._goes_on():
             return LONGEST_PERIOD / SECOND
-        simulator = self._run.simulator
-        due, left = self._pacer.due(simulator.time_ns, simulator.settings.tick_ns,
-                                    self._run.ticks_to_wanted())
-        if due > 0 and self._advance(due, time.monotonic_ns() + BATCH):
+        simulator, wanted = self._run.simulator, self._run.ticks_to_wanted()
+        due, left = self._pacer.due(simulator.time_ns, simulator.settings.tick_ns, wanted)
+        if due > 0 and self._advance(due, wanted, time.monotonic_ns() + BATCH):
             self._pacer.is_up_to_date()
+            simulator = self._run.simulator
+            left = self._pacer.left(simulator.time_ns, simulator.settings.tick_ns,
+                                    self._run.ticks_to_wanted())
         return left / SECOND
 
     def _goes_on(self):
@@ -101,35 +103,41 @@ class Ticker:
         limit = time.monotonic_ns() + LONGEST_LAG
         while arrival is not None:
             if self._goes_on():
-                simulator = self._run.simulator
+                simulator, wanted = self._run.simulator, self._run.ticks_to_wanted()
                 due = pacer.due_before(arrival, simulator.time_ns, simulator.settings.tick_ns,
-                                       self._run.ticks_to_wanted())
+                                       wanted)
                 if due > 0:
-                    self._advance(due, limit)
+                    self._advance(due, wanted, limit)
             mailbox.next_letter().carry_out()
             arrival = mailbox.arrival()
 
-    def _advance(self, due, limit):
-        """Run so many ticks, until a limit of the steady clock [ns]; return whether all are."""
-        run = self._run
-        while due > 0 and self._goes_on():
-            wanted = run.ticks_to_wanted()
+    def _advance(self, due, wanted, limit):
+        """
+        Run so many ticks, until a limit of the steady clock [ns]; return whether all are.
+
+        wanted: how many it is to the first one that somebody waits for.
+        """
+        run, pacer = self._run, self._pacer
+        while True:
             count = min(due, wanted, self._ticks_in_one_go)
+            is_wanted = count == wanted
             begin = time.monotonic_ns()
-            if count == wanted and self._pacer.factor > 0.0:
+            if is_wanted and pacer.factor > 0.0:
                 simulator = run.simulator
-                self.lateness.add(self._pacer.now() - self._pacer.deadline(
+                self.lateness.add(pacer.now() - pacer.deadline(
                     simulator.time_ns + count * simulator.settings.tick_ns))
-            run.advance(count, count == wanted)
+            run.advance(count, is_wanted)
             due -= count
             # Behind the last tick that is due, none is late.
-            self._pacer.late += count == wanted and due > 0 and self._pacer.factor > 0.0
+            pacer.late += is_wanted and due > 0 and pacer.factor > 0.0
             end = time.monotonic_ns()
             if count == self._ticks_in_one_go < wanted:
                 self._learn(end - begin)
+            if due == 0 or not self._goes_on():
+                return True
             if end >= limit:
-                return due == 0
-        return True
+                return False
+            wanted = run.ticks_to_wanted()
 
     def _learn(self, duration):
         """Choose how many ticks to run in one go by how long that took [ns]."""

@@ -5,10 +5,12 @@
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from .audience import Audience
+from .layout_check import layout_fault
 from .message_types import has_message_class, message_class
 from .publish_rates import every_of
 from .qos import profile
 from .schedule import Schedule
+from .sending import Sending
 from ..messages.tick_rows import TickRows
 from ..messages.transforms import TRANSFORMS
 
@@ -29,9 +31,17 @@ class Topics:
         self._node = node
         self._audience = audience
         self._options = options
+        self._sending = Sending(rows, self._is_laid_out())
         self._publishers = [self._publisher(channel) for channel in channels]
         self._schedule = None
         self._rates_version = 0
+
+    def _is_laid_out(self):
+        """Tell whether ROS lays messages out as rows do; warn where it does not."""
+        fault = layout_fault(self.channels)
+        if fault is not None:
+            self._node.get_logger().warning(fault)
+        return fault is None
 
     def resolve(self, topic):
         """Return the full name that a topic has here, remapped if it is."""
@@ -55,7 +65,8 @@ class Topics:
                      for publisher in self._publishers]
             every = [every_of(channel, tick_ns, self._options) for channel in self.channels]
             schedule = self._schedule = Schedule(
-                self.channels, self._publishers, every, heard, recording, made_for, self.rows)
+                self.channels, self._publishers, every, heard, recording, made_for, self.rows,
+                self._sending)
         return schedule
 
     def rates_changed(self):
@@ -72,20 +83,18 @@ class Topics:
 
         Returns the Wanted rows, which `rows` holds now, and {topic: CDR bytes} of other messages.
         """
-        tick = simulator.tick
-        schedule = self.schedule(simulator.settings.tick_ns, recording)
-        due = schedule.due(tick)
+        due = self.schedule(simulator.settings.tick_ns, recording).due(simulator.tick)
         if due.rows.numbers:
             self.rows.fill(simulator.instant(), stamp_ns, due.rows)
-        for i, publisher in due.heard:
-            publisher.publish(self.rows.message(i))
+        if due.send is not None:
+            due.send()
         others = {}
         for channel, publisher in due.others:
             others[channel.topic] = data = channel.encode(simulator.snapshot(), stamp_ns)
             if publisher is not None:
                 publisher.publish(data)
         self.built += due.count
-        self.skipped += schedule.due_between(tick - 1, tick) - due.count
+        self.skipped += due.skipped
         return due.rows, others
 
 

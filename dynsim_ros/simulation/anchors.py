@@ -53,7 +53,9 @@ class Anchors:
 
     def next_change(self):
         """Return the instant at which the next moving anchor arrives [ns], or None."""
-        return min((arrival for arrival, _ in self._targets.values()), default=None)
+        if not self._targets:
+            return None
+        return min(arrival for arrival, _ in self._targets.values())
 
     def arrive(self):
         """Stop, exactly at its target, every anchor that has arrived by `since`."""

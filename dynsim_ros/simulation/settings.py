@@ -3,6 +3,7 @@
 """How a run is computed, beside what is simulated: ticks, method, step, treatment of commands."""
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 from ..integrators import DEFAULT_METHOD, method_named, METHODS
 from ..scene import did_you_mean, Quantity, SceneError
@@ -43,7 +44,7 @@ class Settings:
             raise SceneError(f"anchor_interpolation: '{self.anchor_interpolation}' is not known; "
                              + did_you_mean(self.anchor_interpolation, INTERPOLATIONS))
 
-    @property
+    @cached_property
     def tick_ns(self):
         """Return the length of a tick: an integer [ns]."""
         return round(SECOND / self.rate)

@@ -12,6 +12,7 @@ from .anchors import Anchors
 from .changes import changed
 from .commands import checked, CommandError, MoveAnchor, PlaceBody, PushBody, SetValues
 from .layout import Layout
+from .look_ahead import known_until
 from .rows.kernel import Instants, prepare_rows
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
@@ -30,6 +31,8 @@ from ..scene.orientation import from_ros
 _LARGEST = 1e100
 # Ticks that are computed in one go: they take some memory.
 MOST_AT_ONCE = 1024
+# Single ticks are computed so many ahead, at least and at most, where no step is needed for them.
+_FEWEST_AHEAD, _MOST_AHEAD = 3, 16
 
 
 class DivergenceError(ArithmeticError):
@@ -77,6 +80,8 @@ class Simulator:
         self._steps = None
         # In which state the motion that now goes on began, if it has begun.
         self._begun_in, self._is_begun = None, False
+        # States at the next ticks, the last one first, as far as they are known by now.
+        self._ahead = []
 
     def _begin_steps(self):
         """Let the integration begin at the present instant, under what is in force."""
@@ -235,13 +240,29 @@ class Simulator:
         other = copy.copy(self)
         other._state, other._pushes = self._state.copy(), self._pushes.copy()
         other._push_ends, other._anchors = dict(self._push_ends), copy.deepcopy(self._anchors)
-        other._steps, other._is_begun = None, False
+        other._steps, other._is_begun, other._ahead = None, False, []
         return other
 
     def advance_tick(self):
         """Advance by one tick; raise DivergenceError if the motion is no longer finite."""
-        self.advance(self.settings.tick_ns)
+        if self._ahead:
+            self._state = self._ahead.pop()
+            self.time_ns += self.settings.tick_ns
+        else:
+            self.advance(self.settings.tick_ns)
+            self._look_ahead()
         self.tick += 1
+
+    def _look_ahead(self):
+        """Compute the states at the next ticks, if the last step has gone past some of them."""
+        tick_ns = self.settings.tick_ns
+        known = (known_until(self._steps) - self.time_ns) // tick_ns
+        count = min(self._count_even(known), _MOST_AHEAD)
+        if count >= _FEWEST_AHEAD:
+            states = np.empty((count, self.layout.size))
+            self._steps.fill(self.time_ns + tick_ns, tick_ns, states, self._next_change())
+            if _is_finite(states.ravel()):
+                self._ahead = list(states[::-1])
 
     def advance_ticks(self, count):
         """
@@ -278,6 +299,7 @@ class Simulator:
             return 0
         if not self._is_begun:
             self._begin_steps()
+        self._ahead = []
         tick_ns = self.settings.tick_ns
         states = np.full((count, self.layout.size), np.nan)
         problem = None
@@ -312,11 +334,11 @@ class Simulator:
             raise DivergenceError(self.failure)
         end = self.time_ns + duration_ns
         while (change := self._next_change()) is not None and change <= end:
-            self._integrate_to(change)
+            self._integrate_to(change, change)
             self._begin_here()
             self._anchors.arrive()
             self._end_pushes()
-        self._integrate_to(end)
+        self._integrate_to(end, change)
 
     def apply(self, command):
         """
@@ -343,18 +365,19 @@ class Simulator:
         return changed(self.scene, self.settings, values)
 
     def _next_change(self):
-        changes = [*self._push_ends.values()]
         arrival = self._anchors.next_change()
-        if arrival is not None:
-            changes.append(arrival)
-        return min(changes, default=None)
+        if not self._push_ends:
+            return arrival
+        end = min(self._push_ends.values())
+        return end if arrival is None else min(end, arrival)
 
-    def _integrate_to(self, end):
-        """Take steps until an instant has been reached or passed."""
+    def _integrate_to(self, end, change):
+        """Take steps until an instant has been reached or passed; change: see _next_change."""
         if not self._is_begun:
             self._begin_steps()
+        self._ahead = []
         try:
-            state = self._steps.state_at(end, self._next_change())
+            state = self._steps.state_at(end, change)
         except IntegrationError as error:
             self._give_up(error, end)
         self._check(state, end)
@@ -388,7 +411,7 @@ class Simulator:
         """Let a step end at the present instant: what follows is under something new."""
         if self._is_begun:
             self._state = self._steps.cut(self.time_ns)
-            self._is_begun = False
+            self._is_begun, self._ahead = False, []
         self._anchors.rebase(self.time_ns)
 
     def _move_anchor(self, command):
@@ -460,8 +483,8 @@ def _set_anchors(anchors, scene, values):
 
 def _is_finite(state):
     """Return whether a state and all that is computed from it are finite numbers."""
-    # Not a number is not below anything.
-    return bool(np.abs(state).max() < _LARGEST)
+    # Not a number is not below anything. The sum of the squares is found in a tenth of the time.
+    return bool(state.dot(state) < _LARGEST or np.abs(state).max() < _LARGEST)
 
 
 def _numbers(values, shape):

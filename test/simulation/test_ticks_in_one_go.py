@@ -47,6 +47,37 @@ def test_every_method(method):
     assert at_once == single
 
 
+@pytest.mark.parametrize('scene', ['sphere_on_spring', 'particle_on_spring', 'spinning_box'])
+def test_looking_ahead_changes_nothing(scene):
+    """Run ticks, and instants for which nothing is looked ahead; all that is kept is alike."""
+    found = []
+    for ahead in True, False:
+        simulator = Simulator(load_scene(scene), rate=1000.0, anchor_interpolation='linear')
+        body, memories = simulator.layout.bodies[0], []
+        for ticks in (1, 2, 40, 7, 100, 150):
+            for _ in range(ticks):
+                simulator.advance_tick() if ahead else simulator.advance(1_000_000)
+            memories.append({**simulator.memory(), 'tick': 0})
+            simulator.apply(PushBody(body, (0.1 * ticks, 0.0, 1.0)))
+            for anchor in simulator.layout.anchors[:1]:
+                simulator.apply(MoveAnchor(anchor, (1e-3 * ticks, 0.0, 2.0)))
+        found.append(memories)
+    assert found[0] == found[1]
+
+
+def test_a_copy_does_not_take_what_was_looked_ahead():
+    simulator = Simulator(load_scene('sphere_on_spring'), rate=1000.0)
+    one_by_one(simulator, 5)
+    before = stand(simulator)
+    simulator.copy().advance_tick()
+    one_by_one(simulator, 5)
+    alone = Simulator(load_scene('sphere_on_spring'), rate=1000.0)
+    one_by_one(alone, 5)
+    assert stand(alone) == before
+    one_by_one(alone, 5)
+    assert stand(simulator) == stand(alone)
+
+
 def test_more_than_are_kept_at_a_time():
     single, at_once = both('sphere_on_spring', 2 * MOST_AT_ONCE + 1, rate=1000.0)
     assert at_once == single
