@@ -36,7 +36,7 @@ def digest(version):
 
 
 def test_flake8(digest, pytestconfig):
-    """It takes half a minute for all files; those that are as they were when it liked them wait."""
+    """It takes half a minute for all files; those that it has liked as they are wait."""
     kept = getattr(pytestconfig, 'cache', None)
     clean = set(kept.get(KEPT, [])) if kept else set()
     digests = {path: digest(path) for path in python_files()}

@@ -123,8 +123,8 @@ def test_arc_tangent():
 def test_compiled_as_plain():
     x = np.concatenate([numbers[:40] for numbers in (*ANGLES.values(), *EXPONENTS.values())])
     y = np.roll(x, 7)
-    np.testing.assert_array_equal(compiled(x, y), [plain(*pair) for pair in zip(x.tolist(),
-                                                                               y.tolist())])
+    found = [plain(*pair) for pair in zip(x.tolist(), y.tolist())]
+    np.testing.assert_array_equal(compiled(x, y), found)
 
 
 def test_zeros_infinities_and_what_is_no_number():

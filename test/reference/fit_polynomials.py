@@ -33,7 +33,7 @@ def value(coefficients, z):
 
 
 def fitted(name):
-    """Return the coefficients of one of FITS as floats, that of degree 0 first, and their error."""
+    """Return the coefficients of one of FITS as floats, of degree 0 first, and their error."""
     with mp.workdps(DIGITS):
         lowest, highest, count, coefficient = FITS[name]
         series = [coefficient(n) for n in range(SERIES)]

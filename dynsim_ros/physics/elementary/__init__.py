@@ -1,7 +1,7 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Sine, cosine, exponential and arc tangent: within one unit of the last place, alike on all machines.
+Sine, cosine, exponential and arc tangent: within one unit of the last place, alike everywhere.
 
 The C library's own are as exact, but their last bits depend on its version and on what the
 processor can do. These are made of +, -, *, / in a fixed order, and of moving bits about. Their
