@@ -37,10 +37,11 @@ class Walk:
     def shortfall(self):
         """Return, in words, by how much rounding exceeds the tolerance; None if it does not."""
         steps = self.current
-        if steps.clock[FLOOR] <= MARGIN * steps.tolerance:
+        margin = MARGIN * steps.method.share
+        if steps.clock[FLOOR] <= margin * steps.tolerance:
             return None
         return (f'the tolerance {steps.tolerance:g} is below what rounding leaves of a motion as '
-                f'fast as this one: it is computed to {steps.clock[FLOOR] / MARGIN:.1g}')
+                f'fast as this one: it is computed to {steps.clock[FLOOR] / margin:.1g}')
 
     def state_at(self, time_ns, limit_ns=None):
         """
@@ -92,7 +93,7 @@ class AdaptiveSteps(Walk):
         self.origin = 0
         # The first and the last arguments of advance, which stay as they are.
         self._arguments = (
-            (model, drive, method.tableaux, method.power, tolerance,
+            (model, drive, method.tableaux, method.power, method.share * tolerance,
              spring_rates(model)[0] / EXPLICIT_REACH),
             (self.clock, self.counts, self.states, new_memory(size, springs), self._dense))
         self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))

@@ -18,10 +18,16 @@ from ..scene import did_you_mean, SceneError
 
 
 class Adaptive(NamedTuple):
-    """What an adaptive method computes with; power: of the step in its error estimate."""
+    """
+    What an adaptive method computes with.
+
+    power: of the step in its error estimate; share: of the tolerance, for an estimate that is
+    nearer to the error than those of the others are.
+    """
 
     tableaux: Tableaux
     power: float
+    share: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -95,7 +101,7 @@ def stormer_extrapolation():
     """Return the Adaptive of Störmer's rule."""
     plan = stormer_schedule()
     return Adaptive(Tableaux(None, plan, None, None, None, explicit_table()),
-                    2.0 * plan.stages - 1.0)
+                    2.0 * plan.stages - 1.0, share=0.5)
 
 
 @lru_cache

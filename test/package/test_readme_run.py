@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pages: what they say to run, by running it; what they say of the node, by asking it."""
 
-from importlib.util import find_spec
+from importlib.machinery import PathFinder
 import os
 import re
 import signal
@@ -134,7 +134,7 @@ def test_topics_commands_and_services(client):
     # the standard ones come with their types alone, see test/ros/test_standard_services.py
     (standard,) = tables('standard service', NODE)
     assert {name: kind for name, kind in offered.items() if 'simulation_interfaces' in kind} == (
-        column(standard) if find_spec('simulation_interfaces') else {})
+        column(standard) if PathFinder.find_spec('simulation_interfaces') else {})
 
 
 def test_diagnostics(client):

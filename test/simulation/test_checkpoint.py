@@ -159,8 +159,8 @@ def test_what_steps_keep_is_saved_or_known():
     known = {
         'FixedSteps': {'_memory', '_step', '_model', '_drive', '_advance', 'removed', 'steps',
                        '_origin', '_grid', '_state'},
-        'AdaptiveSteps': {'method', 'tolerance', 'watch', 'calm', '_memory', '_model', '_drive',
-                          'clock', 'counts', 'states', '_dense', 'origin', '_fastest', 'nowhere',
+        'AdaptiveSteps': {'method', 'tolerance', 'watch', 'calm', '_arguments', 'clock',
+                          'counts', 'states', '_end', '_dense', 'origin', 'nowhere',
                           '_advance'},
         'AutoSteps': {'_cost', 'explicit', '_new_stiff', 'stiff', 'current', '_wait',
                       '_next_trial', '_entered', '_model', '_drive', '_asleep_at'},

@@ -70,9 +70,10 @@ def test_what_is_not_given_stays():
     simulator.run(0.25)
     now = simulator.snapshot()
     assert tuple(before.position('sphere')) == STATE['position']
+    # a step ends where it is put: within the tolerance, it is where it was in the midst of one
     for part in ('velocity', 'orientation', 'angular_velocity'):
         np.testing.assert_allclose(getattr(before, part)('sphere'), getattr(now, part)('sphere'),
-                                   rtol=1e-13)
+                                   rtol=1e-10)
 
 
 @pytest.mark.parametrize('command, words', [

@@ -21,7 +21,7 @@ PLAINER = {'GLIBC_TUNABLES': 'glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2'}
 # What a kernel may call: what IEEE 754 fixes to the last bit, work on integers and memory, and
 # what has to do with being called from Python.
 HARMLESS = re.compile(r'(llvm\.)?(sqrt|fma|floor|fabs|copysign|is\.fpclass)\b'
-                      r'|llvm\.(?!pow).*\.(v\d+)?i\d+$|llvm\.(mem|stack|lifetime)'
+                      r'|llvm\.(?!pow).*\.(v\d+)?i\d+$|llvm\.(mem|masked|stack|lifetime)'
                       r'|Py|numba_|NRT_')
 # What of a module of mathematics is fixed to the last bit, or made of integers.
 FIXED = {'comb', 'copysign', 'factorial', 'floor', 'inf', 'isfinite', 'nan', 'pi', 'sqrt'}
