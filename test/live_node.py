@@ -39,14 +39,14 @@ class LiveNode:
     What it prints, log included, can be read at any time as `output`.
     """
 
-    def __init__(self, folder, *ros_args, options=(), name='/dynsim'):
-        """Start the process; folder: a pathlib.Path that exists."""
+    def __init__(self, folder, *ros_args, options=(), name='/dynsim', within=()):
+        """Start the process; folder: a pathlib.Path that exists; within: command that runs it."""
         self.folder = folder
         self.name = name
         self._output = folder / f'output{name.replace("/", "_")}.txt'
         with open(self._output, 'wb') as stream:
             self.process = subprocess.Popen(
-                [*COMMAND, *options, '--ros-args', *map(str, ros_args)], cwd=folder,
+                [*within, *COMMAND, *options, '--ros-args', *map(str, ros_args)], cwd=folder,
                 stdin=subprocess.DEVNULL, stdout=stream, stderr=subprocess.STDOUT)
 
     @property

@@ -1,11 +1,7 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Recording as it is asked for, by parameter and by service; and when the disk does not play."""
+"""Recording as it is asked for, by parameter and by service."""
 
-import resource
-
-from dynsim_ros.bag.reader import open_bag
-from dynsim_ros.bag.recovery.recover import recover
 from dynsim_ros.messages.cdr import decode
 from dynsim_ros.messages.commands import PARAMETER
 from live_node import age
@@ -128,59 +124,6 @@ def test_a_reset_that_cannot_record_says_so_and_goes_on(node, client):
     assert 'record.directory: /proc/nowhere cannot be written to' in node.output[before:]
     assert last_told(client).message == 'not recording'
     client.configure({'record.directory': 'runs'})
-
-
-def fill_disk(node, client):
-    """Let the bag find no room any more, wait until that is told; return it and the limits."""
-    path = node.folder / client.record(True).message.removeprefix('recording already, to ')
-    before = len(node.output)
-    # a file size limit is as good as a full disk; shared memory of DDS is there already
-    limits = resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, (
-        max(path.stat().st_size, 1) + 150_000, resource.RLIM_INFINITY))
-    client.configure({'rate': 1000.0})
-    client.wait(lambda: 'recorder: ' in node.output[before:])
-    assert f'{path.name} cannot be written: File too large' in node.output[before:]
-    return path, limits
-
-
-def test_full_disk_that_has_room_again(node, client):
-    path, limits = fill_disk(node, client)
-    status = client.wait(lambda: (found := last_told(client)).level == b'\x02' and found)
-    assert f'{path.name} cannot be written: File too large' in status.message
-    values = {item.key: int(item.value) for item in status.values if item.key != 'file'}
-    assert 0 < values['waiting'] < values['may wait'] and values['lost'] == 0
-    client.more('sphere/pose', 20)
-    resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, limits)
-    client.wait(lambda: 'is written again' in node.output)
-    client.wait(lambda: last_told(client).level == b'\x00')
-    assert 'lost' not in client.record(False).message
-    client.configure({'rate': 100.0})
-    with open_bag(path) as bag:
-        assert bag.complete
-        times = [stamp for topic, stamp, _ in bag.messages() if topic == '/dynsim/sphere/pose']
-    steps = {later - earlier for earlier, later in zip(times, times[1:])}
-    # at 100 Hz, and at 1 kHz: none is missing
-    assert steps == {10_000_000, 1_000_000}
-    assert node.output.count('[ERROR] ') == node.output.count('cannot be written') > 0
-
-
-def test_full_disk_to_the_end(node, client):
-    path, limits = fill_disk(node, client)
-    stopped = client.record(False)
-    assert stopped.success and ' lost: ' in stopped.message
-    assert 'is not finished: File too large; recover it when there is room' in node.output
-    resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE, limits)
-    # what it holds comes out with a reader that does not need an end
-    with open_bag(path) as bag:
-        assert bag.problem and sum(1 for _ in bag.messages()) > 1000
-    recover(path)
-    # and the next one is a good one again
-    assert client.record(True).success
-    client.more('sphere/pose', 20)
-    again = client.record(False).message
-    assert 'lost' not in again
-    assert summary(node.folder / again.split(' in ')[1]).statistics.message_count > 100
-    client.configure({'rate': 100.0})
 
 
 def test_all_is_finished_in_the_end(node, client):
