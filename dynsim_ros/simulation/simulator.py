@@ -32,7 +32,7 @@ _LARGEST = 1e100
 # Ticks that are computed in one go: they take some memory.
 MOST_AT_ONCE = 1024
 # Single ticks are computed so many ahead, at least and at most, where no step is needed for them.
-_FEWEST_AHEAD, _MOST_AHEAD = 3, 16
+_FEWEST_AHEAD, MOST_AHEAD = 3, 16
 
 
 class DivergenceError(ArithmeticError):
@@ -80,8 +80,11 @@ class Simulator:
         self._steps = None
         # In which state the motion that now goes on began, if it has begun.
         self._begun_in, self._is_begun = None, False
-        # States at the next ticks, the last one first, as far as they are known by now.
-        self._ahead = []
+        self._forget_ahead()
+
+    def _forget_ahead(self):
+        # States at the next ticks, as far as they are known by now; how many of them are past.
+        self._ahead, self._past = (), 0
 
     def _begin_steps(self):
         """Let the integration begin at the present instant, under what is in force."""
@@ -240,29 +243,49 @@ class Simulator:
         other = copy.copy(self)
         other._state, other._pushes = self._state.copy(), self._pushes.copy()
         other._push_ends, other._anchors = dict(self._push_ends), copy.deepcopy(self._anchors)
-        other._steps, other._is_begun, other._ahead = None, False, []
+        other._steps, other._is_begun = None, False
+        other._forget_ahead()
         return other
 
     def advance_tick(self):
         """Advance by one tick; raise DivergenceError if the motion is no longer finite."""
-        if self._ahead:
-            self._state = self._ahead.pop()
-            self.time_ns += self.settings.tick_ns
+        if self._past < len(self._ahead):
+            self.take(1)
         else:
             self.advance(self.settings.tick_ns)
+            self.tick += 1
             self._look_ahead()
-        self.tick += 1
+
+    def known_ahead(self):
+        """Return at how many of the next ticks the states are known; see look_ahead."""
+        if self._past == len(self._ahead) and self._is_begun and self.failure is None:
+            self._look_ahead()
+        return len(self._ahead) - self._past
+
+    def instants_ahead(self, count):
+        """Return the Instants of that many of the next ticks whose states are known."""
+        anchors, tick_ns = self._anchors, self.settings.tick_ns
+        return Instants(self._model, anchors.motion, self.time_ns + tick_ns - anchors.since,
+                        self._pushes, self._reference_energy,
+                        self._ahead[self._past:self._past + count], tick_ns)
+
+    def take(self, count):
+        """Advance by some ticks, at least one, whose states are known."""
+        self._past += count
+        self._state = self._ahead[self._past - 1]
+        self.time_ns += count * self.settings.tick_ns
+        self.tick += count
 
     def _look_ahead(self):
         """Compute the states at the next ticks, if the last step has gone past some of them."""
         tick_ns = self.settings.tick_ns
         known = (known_until(self._steps) - self.time_ns) // tick_ns
-        count = min(self._count_even(known), _MOST_AHEAD)
+        count = min(self._count_even(known), MOST_AHEAD)
         if count >= _FEWEST_AHEAD:
             states = np.empty((count, self.layout.size))
             self._steps.fill(self.time_ns + tick_ns, tick_ns, states, self._next_change())
             if _is_finite(states.ravel()):
-                self._ahead = list(states[::-1])
+                self._ahead, self._past = states, 0
 
     def advance_ticks(self, count):
         """
@@ -299,7 +322,7 @@ class Simulator:
             return 0
         if not self._is_begun:
             self._begin_steps()
-        self._ahead = []
+        self._forget_ahead()
         tick_ns = self.settings.tick_ns
         states = np.full((count, self.layout.size), np.nan)
         problem = None
@@ -375,7 +398,7 @@ class Simulator:
         """Take steps until an instant has been reached or passed; change: see _next_change."""
         if not self._is_begun:
             self._begin_steps()
-        self._ahead = []
+        self._forget_ahead()
         try:
             state = self._steps.state_at(end, change)
         except IntegrationError as error:
@@ -411,7 +434,8 @@ class Simulator:
         """Let a step end at the present instant: what follows is under something new."""
         if self._is_begun:
             self._state = self._steps.cut(self.time_ns)
-            self._is_begun, self._ahead = False, []
+            self._is_begun = False
+            self._forget_ahead()
         self._anchors.rebase(self.time_ns)
 
     def _move_anchor(self, command):
