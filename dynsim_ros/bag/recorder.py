@@ -127,10 +127,10 @@ class Recorder:
             self._lose(stamp_ns, count)
 
     def put_many_rows(self, rows: TickRows, stamps: np.ndarray, wanted: Wanted):
-        """Hand over likewise all instants filled in last; stamps: (instants,) int64 [ns]."""
+        """Hand over likewise the first instants filled in last; stamps: (instants,) int64 [ns]."""
         count = len(wanted.numbers)
         if self._has_room():
-            self._backlog.add_many_rows(rows.blocks, stamps, count * len(stamps))
+            self._backlog.add_many_rows(rows.blocks[:len(stamps)], stamps, count * len(stamps))
             return
         for stamp_ns in stamps.tolist():
             self._lose(stamp_ns, count)

@@ -84,6 +84,17 @@ class RunBag:
             self._put(stamp_ns, [])
         self.recorder.put_rows(rows, stamp_ns, wanted)
 
+    @property
+    def can_put_many(self):
+        """Tell whether rows may be put many at a time: not where a next file may begin."""
+        return not self._files.limits.are_set
+
+    def put_many_rows(self, rows, stamps, wanted):
+        """Record likewise the first instants filled in last; stamps: (instants,) int64 [ns]."""
+        if self._latched:
+            self._put(int(stamps[0]), [])
+        self.recorder.put_many_rows(rows, stamps, wanted)
+
     def put(self, stamp_ns, messages):
         """Record {topic: CDR bytes} at a time [ns]."""
         self._put(stamp_ns, messages.items())

@@ -36,14 +36,18 @@ class TickRows:
 
     channels: those Channels of a list that have a row, in their order; table: RowTable; size:
     bytes of a block; block: (size,) uint8, that of the instant filled in last; view: its memory;
-    blocks: (instants, size). Each message is padded to a multiple of four, as DDS does it, and
-    stands behind the head of its record in a bag. To use it: wanted = rows.of(channels), once; at
+    blocks: (instants, size), the first of those in `reserved`. Each message is padded to a
+    multiple of four, as DDS does it, and stands behind the head of its record in a bag. To use it: wanted = rows.of(channels), once; at
     every tick rows.fill(simulator.instant(), stamp_ns, wanted) and, of each row number i in
     wanted.numbers, publisher.publish(rows.message(i)).
     """
 
-    def __init__(self, channels, layout: Layout):
-        """Lay out the rows of channels; layout: that of the scene whose channels they are."""
+    def __init__(self, channels, layout: Layout, reserve: int = 1):
+        """
+        Lay out the rows of channels; layout: that of the scene whose channels they are.
+
+        reserve: as long as no more instants are filled in at a time, blocks stay where they are.
+        """
         self.channels = [channel for channel in channels if channel.row is not None]
         rows = [channel.row for channel in self.channels]
         sizes = [HEAD_SIZE + _padded(row.template.size) for row in rows]
@@ -56,8 +60,8 @@ class TickRows:
         self._numbers = Numbers(layout)
         self._arrays = self._numbers.arrays()
         self._wanted: dict[tuple, Wanted] = {}
-        self._blocks = self.new_blocks(1)
-        self._use(self._blocks)
+        self.reserved = self.new_blocks(reserve)
+        self._use(self.reserved[:1])
         self._kernel, self._model = None, None
 
     def new_blocks(self, count: int) -> np.ndarray:
@@ -84,14 +88,14 @@ class TickRows:
         blocks are in `blocks`.
         """
         count = len(instants.states)
-        if count > len(self._blocks):
-            self._blocks = self.new_blocks(count)
+        if count > len(self.reserved):
+            self.reserved = self.new_blocks(count)
         if instants.model is not self._model:
             self._choose(instants)
         self._kernel(instants, stamp_ns, wanted.mask, wanted.with_forces, wanted.with_energies,
-                     self.table, self._arrays, self._blocks)
+                     self.table, self._arrays, self.reserved)
         if count != len(self.blocks):
-            self._use(self._blocks[:count])
+            self._use(self.reserved[:count])
 
     def message(self, i: int) -> bytes:
         """Return the message of row i of `block`, as CDR bytes."""

@@ -23,7 +23,7 @@ class FollowedClock:
         self._was_set_back = was_set_back
         self._seen = 0
         run.waiting = True
-        pacer.now, pacer.longest_lag = self.now, LONGEST_STRIDE
+        pacer.now, pacer.longest_lag, pacer.is_steady = self.now, LONGEST_STRIDE, False
         self._jumps = clock.create_jump_callback(_ANY, post_callback=lambda _: moved())
 
     def now(self):

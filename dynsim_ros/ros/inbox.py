@@ -5,13 +5,16 @@
 from collections import deque
 import threading
 
+import numpy as np
+
 
 class Mailbox:
     """
     Takes actions from any thread; one thread, the reader, carries them out in order of arrival.
 
     now: function that returns the time at which an action arrives [ns]. As long as there is no
-    reader, actions are carried out where they are handed in.
+    reader, actions are carried out where they are handed in. alarm: (1,) int64, for a reader that
+    is at work in compiled code: 1 if it has something else to do.
     """
 
     def __init__(self, now):
@@ -21,6 +24,7 @@ class Mailbox:
         # sleeping does, and can be cut short.
         self._bell = threading.Lock()
         self._bell.acquire()
+        self.alarm = np.zeros(1, np.int64)
         self._is_read = False
         self._reader = None
 
@@ -38,6 +42,7 @@ class Mailbox:
         """Have action() done; does not wait, nor wake the reader."""
         if self._is_read:
             self._letters.append(_Letter(self._now(), action))
+            self.alarm[0] = 1
         else:
             action()
 
@@ -55,6 +60,7 @@ class Mailbox:
 
     def wake(self):
         """Let the reader return from wait, now or when it waits next."""
+        self.alarm[0] = 1
         try:
             self._bell.release()
         except RuntimeError:
@@ -63,6 +69,11 @@ class Mailbox:
     def wait(self, seconds):
         """Wait for so long, or until woken; for the reader."""
         self._bell.acquire(timeout=seconds)
+
+    def is_quiet(self):
+        """Tell whether the reader has nothing to do; the alarm is off then; for the reader."""
+        self.alarm[0] = 0
+        return not self._letters and self._bell.locked()
 
     def arrival(self):
         """Return when the oldest action arrived [ns], None if there is none."""

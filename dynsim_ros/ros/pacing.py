@@ -22,12 +22,13 @@ class Pacer:
 
     factor: simulated seconds per second of the clock, 0 for as fast as possible; now: function
     that returns the clock's time [ns]; longest_lag: what is made up for at most [ns of the
-    clock]. missed: ticks given up; late: ticks that were run when the next one was already due.
+    clock]. is_steady: whether that clock is the operating system's steady one; missed: ticks given up; late: ticks that were run when the next one was already due.
     """
 
     def __init__(self, factor, now=time.monotonic_ns):
         self.factor = factor
         self.now = now
+        self.is_steady = now is time.monotonic_ns
         self.longest_lag = LONGEST_LAG
         self.missed = 0
         self.late = 0

@@ -5,6 +5,8 @@
 import os
 import time
 
+import numpy as np
+
 from ..bag.bag_files import Limits
 from ..bag.bag_names import new_path
 from ..bag.run_bag import RunBag
@@ -70,9 +72,14 @@ class Run:
         ticks = self.topics.schedule(tick_ns, self.bag is not None).ticks_to_wanted(simulator.tick)
         if ticks == 1:
             return 1
-        duration = self._options['duration']
-        to_end = -((simulator.time_ns - round(duration * 1e9)) // tick_ns) if duration else _FAR
-        return max(min(_FAR if ticks is None else ticks, to_end), 1)
+        return max(min(_FAR if ticks is None else ticks, self._ticks_to_end()), 1)
+
+    def _ticks_to_end(self):
+        """Return after how many ticks the run has lasted as long as it was to last."""
+        duration, simulator = self._options['duration'], self.simulator
+        if not duration:
+            return _FAR
+        return -((simulator.time_ns - round(duration * 1e9)) // simulator.settings.tick_ns)
 
     def advance(self, ticks, is_wanted):
         """
@@ -121,12 +128,54 @@ class Run:
         self.work['publish'] += built - begin
         self.work['record'] += time.monotonic_ns() - built
 
+    def stretch_ahead(self, most):
+        """
+        Return (Due, count): the next ticks that need nothing but rows, the same ones at each.
+
+        At most so many, whose states are known; 0 where the run is not to go on, or not so.
+        """
+        simulator = self.simulator
+        if (self.paused or self.waiting or self.finished
+                or (self._options['publish_clock'] and self._clock.is_heard)
+                or (self.bag is not None and not self.bag.can_put_many)):
+            return None, 0
+        schedule = self.topics.schedule(simulator.settings.tick_ns, self.bag is not None)
+        count = min(schedule.alike_after(simulator.tick), self._ticks_to_end(), most)
+        if count > 1:
+            count = min(simulator.known_ahead(), count)
+        if count < 2:
+            return None, 0
+        return schedule.due(simulator.tick + 1), count
+
+    def build_ahead(self, due, count):
+        """Build the messages of so many ticks that stretch_ahead returned."""
+        simulator = self.simulator
+        self.topics.rows.fill(simulator.instants_ahead(count),
+                              self.stamp_ns + simulator.settings.tick_ns, due.rows)
+
+    def was_published(self, due, count):
+        """Take note that the first so many of them were published; record them."""
+        simulator, before = self.simulator, self.stamp_ns
+        simulator.take(count)
+        self.topics.were_published(due, count)
+        if self.bag is not None:
+            begin = time.monotonic_ns()
+            tick_ns = simulator.settings.tick_ns
+            self.bag.recorder.wait = self._may_wait()
+            self.bag.put_many_rows(self.topics.rows,
+                                   before + tick_ns * np.arange(1, count + 1), due.rows)
+            self._tell_news(self.bag)
+            self.work['record'] += time.monotonic_ns() - begin
+
+    def _may_wait(self):
+        """Tell whether the run may wait for the disk: one that is to be faster than time."""
+        factor = self._options['real_time_factor']
+        return factor == 0.0 or factor > 1.0
+
     def record(self, messages, rows=None):
         """Record {topic: CDR bytes}, and rows, at the present instant, if there is a bag."""
         if self.bag is not None and not self.waiting:
-            # A run that is to be faster than time may wait for the disk, another one never.
-            factor = self._options['real_time_factor']
-            self.bag.recorder.wait = factor == 0.0 or factor > 1.0
+            self.bag.recorder.wait = self._may_wait()
             if rows is not None and rows.numbers:
                 self.bag.put_rows(self.topics.rows, self.stamp_ns, rows)
             if messages:

@@ -9,18 +9,21 @@ from typing import NamedTuple
 from .sending import Sending
 from ..messages.tick_rows import TickRows, Wanted
 
+# More ticks than any run has.
+_FAR = 2 ** 62
+
 
 class Due(NamedTuple):
     """
     What to build at a tick.
 
-    rows: Wanted; send: function that publishes those that are heard, None where none is; others:
-    [(channel, publisher)] of what is no row, the publisher None where nobody listens; count: of
+    rows: Wanted; send: publishes those that are heard, see Sending; others: [(channel,
+    publisher)] of what is no row, the publisher None where nobody listens; count: of
     messages; skipped: how many are due, but not wanted.
     """
 
     rows: Wanted
-    send: Callable | None
+    send: Callable
     others: list
     count: int
     skipped: int
@@ -66,6 +69,12 @@ class Schedule:
             due = self._built[ends] = self._work_out(tick)
         return due
 
+    def alike_after(self, tick):
+        """Return how many ticks after one have messages, and all of them the same ones."""
+        if self._intervals[:1] != [1]:
+            return 0
+        return min((ticks - tick % ticks - 1 for ticks in self._longer), default=_FAR)
+
     def _work_out(self, tick):
         due = [(channel, publisher) for channel, publisher, ticks in self.wanted
                if tick % ticks == 0]
@@ -74,7 +83,7 @@ class Schedule:
         heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
                  if publisher is not None]
         others = [(channel, publisher) for channel, publisher in due if channel.row is None]
-        return Due(rows, self._sending.of(heard) if heard else None, others, len(due),
+        return Due(rows, self._sending.of(heard), others, len(due),
                    self.due_between(tick - 1, tick) - len(due))
 
     def due_between(self, first, last):

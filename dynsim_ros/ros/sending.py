@@ -8,18 +8,17 @@ does it under the interpreter's lock. rcl's own function takes the bytes where t
 """
 
 import ctypes
+from typing import NamedTuple
 
-from llvmlite import ir
 import numba
-from numba import types
-from numba.extending import intrinsic
 import numpy as np
 
+from .calling import call
 from .layout_check import typed_message
 from ..integrators.entry import entry
 from ..messages.cdr import decode
 from ..messages.tick_rows import TickRows
-from ..physics.jit import kernel
+from ..physics.jit import formula, kernel
 
 
 class _Allocator(ctypes.Structure):
@@ -36,31 +35,51 @@ class _Message(ctypes.Structure):
                 ('capacity', ctypes.c_size_t), ('allocator', _Allocator)]
 
 
-@intrinsic
-def _call(typing_context, function, publisher, message):
-    """Return function(publisher, message, NULL), all given as addresses: 0 for success."""
-    def generate(context, builder, sig, args):
-        byte, status = ir.IntType(8).as_pointer(), ir.IntType(32)
-        kind = ir.FunctionType(status, [byte, byte, byte])
-        address, *pointers = (builder.inttoptr(arg, what) for arg, what
-                              in zip(args, (kind.as_pointer(), byte, byte)))
-        return builder.call(address, [*pointers, ir.Constant(byte, None)])
-    return types.int32(types.int64, types.int64, types.int64), generate
+_WORDS = ctypes.sizeof(_Message) // 8
+
+
+class Rows(NamedTuple):
+    """
+    What compiled code needs to publish rows; all numbers but `offsets` and `stride` are addresses.
+
+    publish: of rcl's function; publishers: (n,); messages: (n, 8) int64, as _Message, and where
+    they are; blocks: of the first block; stride: from one block to the next; offsets: (n,) of the
+    messages in a block.
+    """
+
+    publish: int
+    publishers: np.ndarray
+    messages: np.ndarray
+    at: np.ndarray
+    blocks: int
+    stride: int
+    offsets: np.ndarray
+
+
+@formula
+def publish_block(rows, k):
+    """Publish the rows of block k; return how many, up to the first that fails."""
+    for i in range(rows.publishers.shape[0]):
+        rows.messages[i, 0] = rows.blocks + k * rows.stride + rows.offsets[i]
+        if call(rows.publish, (rows.publishers[i], rows.at[i], 0)) != 0:
+            return i
+    return rows.publishers.shape[0]
 
 
 @kernel
-def _publish(function, publishers, messages):
-    """Publish messages, each by its publisher; return how many, up to the first that fails."""
-    for i in range(publishers.shape[0]):
-        if _call(function, publishers[i], messages[i]) != 0:
-            return i
-    return publishers.shape[0]
+def _publish(rows):
+    return publish_block(rows, 0)
 
 
 def prepare_sending():
     """Compile, or load from the disk cache, the kernel; return it, see entry."""
+    return entry(_publish, no_rows())
+
+
+def no_rows():
+    """Return Rows without any, for their type."""
     none = np.zeros(0, np.int64)
-    return entry(_publish, 0, none, none)
+    return Rows(0, none, np.zeros((0, _WORDS), np.int64), none, 0, 0, none)
 
 
 class Rcl:
@@ -98,30 +117,31 @@ def _is_as_expected(rcutils):
 
 
 class Together:
-    """Publishes some rows of TickRows by one call; pairs: [(row number, publisher)]."""
+    """
+    Publishes some rows of TickRows by one call; pairs: [(row number, publisher)].
 
-    def __init__(self, rcl: Rcl, rows: TickRows, pairs):
-        self._rcl, self._rows, self._pairs = rcl, rows, pairs
-        # Kept, as the numbers below point to it.
-        self._block = rows.block
-        self._messages = (_Message * len(pairs))()
-        for message, (i, _) in zip(self._messages, pairs):
-            start, end = rows.spans[i]
-            message.buffer = self._block.ctypes.data + start
-            message.length = message.capacity = end - start
-        first, size = ctypes.addressof(self._messages), ctypes.sizeof(_Message)
-        publishers = [publisher.handle.pointer for _, publisher in pairs]
-        self._arguments = (rcl.publish, np.array(publishers, np.int64),
-                           np.arange(len(pairs), dtype=np.int64) * size + first)
+    rows: what compiled code needs for it.
+    """
+
+    def __init__(self, rcl: Rcl, tick_rows: TickRows, pairs):
+        self._rcl, self._tick_rows, self._pairs = rcl, tick_rows, pairs
+        messages = np.zeros((len(pairs), _WORDS), np.int64)
+        spans = np.array([tick_rows.spans[i] for i, _ in pairs], np.int64).reshape(-1, 2)
+        messages[:, 1] = messages[:, 2] = spans[:, 1] - spans[:, 0]
+        self.rows = Rows(
+            rcl.publish,
+            np.array([publisher.handle.pointer for _, publisher in pairs], np.int64),
+            messages, messages.ctypes.data + np.arange(len(pairs)) * messages.strides[0],
+            tick_rows.reserved.ctypes.data, tick_rows.size, spans[:, 0].copy())
         self._publish = prepare_sending()
 
     def __call__(self):
         """Publish what the rows hold; raise what publish() raises."""
-        sent = self._publish(*self._arguments)
+        sent = self._publish(self.rows)
         if sent < len(self._pairs):
             self._rcl.forget_error()
             # Says why, too.
-            OneByOne(self._rows, self._pairs[sent:])()
+            OneByOne(self._tick_rows, self._pairs[sent:])()
 
 
 class OneByOne:
@@ -164,6 +184,6 @@ class Sending:
         """Return a function that publishes [(row number, publisher)] each time it is called."""
         if not self._is_laid_out:
             return Typed(self._rows, pairs)
-        if self._rcl.publish is None or not pairs:
+        if self._rcl.publish is None:
             return OneByOne(self._rows, pairs)
         return Together(self._rcl, self._rows, pairs)

@@ -9,6 +9,7 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from .audience import Audience
+from .bursts import prepare_bursts
 from .clock import ClockPublisher
 from .commands import Commands
 from .compiling import Compiling
@@ -36,6 +37,7 @@ from ..messages.scene_channels import scene_channels
 from ..messages.tick_rows import TickRows
 from ..scene import SceneError
 from ..simulation import Simulator
+from ..simulation.simulator import MOST_AHEAD
 
 # How often to see who listens, where the middleware does not tell of changes [s].
 _LOOK = 0.05
@@ -64,6 +66,7 @@ class SimNode(Node):
         simulator.prepare()
         # Who begins to listen, or to record, later on does not wait for it.
         prepare_sending()
+        prepare_bursts()
         prepare_packing()
         self.audience = Audience(lambda: self.ticker.mailbox.wake())
         self._clock_publisher = ClockPublisher(self, self.audience)
@@ -96,8 +99,8 @@ class SimNode(Node):
         """Make what publishes the run, what it ticks in and what commands it."""
         channels = scene_channels(simulator.scene, simulator.layout,
                                   self.get_fully_qualified_name())
-        topics = Topics(self, channels, TickRows(channels, simulator.layout), self.audience,
-                        self.parameters.own)
+        rows = TickRows(channels, simulator.layout, reserve=MOST_AHEAD)
+        topics = Topics(self, channels, rows, self.audience, self.parameters.own)
         self.run = Run(simulator, topics, self._clock_publisher, self.parameters.own, self)
         self.ticker = Ticker(self.run, self.pacer,
                              lambda: self._followed is None or self._followed.is_good(),

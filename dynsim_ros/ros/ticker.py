@@ -5,6 +5,7 @@
 import threading
 import time
 
+from .bursts import Bursts
 from .histogram import Histogram
 from .inbox import Mailbox
 from .pacing import LONGEST_LAG, LONGEST_PERIOD, SECOND
@@ -36,6 +37,7 @@ class Ticker:
         self.lateness = Histogram()
         self._options, self._warn = options, warn
         self._spin = options['real_time.spin']
+        self._bursts = Bursts(run, pacer, self.mailbox, self.lateness, self._spin)
         self._ticks_in_one_go = 1
         self._is_ending = False
         self._thread = threading.Thread(target=self._work, name='ticks', daemon=True)
@@ -58,7 +60,7 @@ class Ticker:
             self._ask_for_real_time()
             while not self._is_ending:
                 seconds = self._turn()
-                if seconds > self._spin:
+                if seconds > self._spin and not self._bursts.go():
                     self.mailbox.wait(seconds - self._spin)
         except BaseException as error:
             self.error = error

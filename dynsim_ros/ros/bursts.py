@@ -1,0 +1,127 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Ticks that follow each other without the interpreter: compiled code waits for them and publishes.
+
+The states at the next ticks are often known, see Simulator.known_ahead. Their messages are built
+in one go; what is left to be done at each tick is to wake up and to send. The interpreter, its
+lock and whoever else holds that are not needed for it.
+"""
+
+import ctypes
+import time
+
+import numpy as np
+
+from .calling import call
+from .sending import no_rows, publish_block, Together
+from ..integrators.entry import entry
+from ..physics.jit import kernel
+from ..simulation.simulator import MOST_AHEAD
+
+# So long ticks are at most [ns]: who asks for something waits for the end of one.
+_LONGEST_TICK = 2_000_000
+# A burst lasts about so long at most [ns]: what is recorded of it waits until then.
+_LONGEST = 10_000_000
+# Ticks that are later than this are left to who can give them up [ns].
+_PATIENCE = 5_000_000
+_MONOTONIC, _ABSOLUTE = time.CLOCK_MONOTONIC, 1
+_SECOND = 1_000_000_000
+
+
+@kernel
+def _tick_on(sleep, clock, instant, deadlines, spin, alarm, late, spent, rows):
+    """
+    Publish block k of rows at deadline k of the steady clock [ns]; return how many were.
+
+    sleep, clock: addresses of clock_nanosleep and clock_gettime; instant: (3,) a timespec and its
+    address; spin: how long before a deadline to wait busily [ns]; alarm: (1,) ends it before the
+    next tick where it is not 0; late: (ticks,) receives how late each was; spent: (1,) how long
+    publishing took [ns].
+    """
+    for k in range(deadlines.shape[0]):
+        deadline = deadlines[k]
+        now = 0
+        while now < deadline:
+            call(clock, (_MONOTONIC, instant[2]))
+            now = instant[0] * _SECOND + instant[1]
+            if alarm[0] != 0:
+                return k
+            wake = deadline - spin
+            if now < wake:
+                instant[0], instant[1] = wake // _SECOND, wake % _SECOND
+                call(sleep, (_MONOTONIC, _ABSOLUTE, instant[2], 0))
+        late[k] = now - deadline
+        if late[k] > _PATIENCE or publish_block(rows, k) < rows.publishers.shape[0]:
+            return k
+        call(clock, (_MONOTONIC, instant[2]))
+        spent[0] += instant[0] * _SECOND + instant[1] - now
+    return deadlines.shape[0]
+
+
+class Bursts:
+    """
+    Lets a Run tick on in this way for as long as all that it needs is known.
+
+    pacer: Pacer; mailbox: Mailbox, whose letters end a burst; lateness: Histogram; spin: [s].
+    is_possible: whether it can be done at all here.
+    """
+
+    def __init__(self, run, pacer, mailbox, lateness, spin):
+        self._run, self._pacer, self._mailbox, self._lateness = run, pacer, mailbox, lateness
+        self._spin = round(spin * _SECOND)
+        self._late = np.zeros(MOST_AHEAD, np.int64)
+        self._spent = np.zeros(1, np.int64)
+        self._instant = np.zeros(3, np.int64)
+        self._instant[2] = self._instant.ctypes.data
+        self._functions = _functions()
+        self._tick_on = None
+
+    def go(self):
+        """Do what can be done in this way, before anything else is due; tell whether it was."""
+        simulator, pacer = self._run.simulator, self._pacer
+        period = simulator.settings.tick_ns / pacer.factor if pacer.factor > 0.0 else 0.0
+        if self._functions is None or not 0.0 < period <= _LONGEST_TICK or not pacer.is_steady:
+            return False
+        due, count = self._run.stretch_ahead(min(int(_LONGEST / period), MOST_AHEAD))
+        if count < 2 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
+            return False
+        self._tick(due, count, period)
+        return True
+
+    def _tick(self, due, count, period):
+        """Run at most so many ticks, all of which have the messages of a Due."""
+        run, pacer = self._run, self._pacer
+        first, tick_ns = run.simulator.time_ns, run.simulator.settings.tick_ns
+        begin = time.monotonic_ns()
+        run.build_ahead(due, count)
+        deadlines = np.array([pacer.deadline(first + k * tick_ns) for k in range(1, count + 1)])
+        built = time.monotonic_ns()
+        self._spent[0] = 0
+        if self._tick_on is None:
+            self._tick_on = prepare_bursts()
+        done = self._tick_on(*self._functions, self._instant, deadlines, self._spin,
+                             self._mailbox.alarm, self._late, self._spent, due.send.rows)
+        if done:
+            run.was_published(due, done)
+            pacer.is_up_to_date()
+        for late in self._late[:done].tolist():
+            self._lateness.add(late)
+            pacer.late += late >= period
+        run.work['publish'] += built - begin + int(self._spent[0])
+
+
+def prepare_bursts():
+    """Compile, or load from the disk cache, the kernel; return it, see entry."""
+    numbers = np.zeros(3, np.int64)
+    return entry(_tick_on, 0, 0, numbers, numbers, 0, numbers, numbers, numbers, no_rows())
+
+
+def _functions():
+    """Return the addresses of clock_nanosleep and clock_gettime, None where they are not there."""
+    try:
+        libc = ctypes.CDLL(None)
+        return tuple(ctypes.cast(function, ctypes.c_void_p).value
+                     for function in (libc.clock_nanosleep, libc.clock_gettime))
+    except (AttributeError, OSError):
+        return None  # another system
