@@ -37,9 +37,9 @@ class TickRows:
     channels: those Channels of a list that have a row, in their order; table: RowTable; size:
     bytes of a block; block: (size,) uint8, that of the instant filled in last; view: its memory;
     blocks: (instants, size), the first of those in `reserved`. Each message is padded to a
-    multiple of four, as DDS does it, and stands behind the head of its record in a bag. To use it: wanted = rows.of(channels), once; at
-    every tick rows.fill(simulator.instant(), stamp_ns, wanted) and, of each row number i in
-    wanted.numbers, publisher.publish(rows.message(i)).
+    multiple of four, as DDS does it, and stands behind the head of its record in a bag. To use it:
+    wanted = rows.of(channels), once; at every tick rows.fill(simulator.instant(), stamp_ns,
+    wanted) and, of each row number i in wanted.numbers, publisher.publish(rows.message(i)).
     """
 
     def __init__(self, channels, layout: Layout, reserve: int = 1):

@@ -21,8 +21,8 @@ from ..simulation.simulator import MOST_AHEAD
 
 # So long ticks are at most [ns]: who asks for something waits for the end of one.
 _LONGEST_TICK = 2_000_000
-# A burst lasts about so long at most [ns]: what is recorded of it waits until then.
-_LONGEST = 10_000_000
+# So long a burst lasts at most that is recorded [ns]: what is to be recorded waits until then.
+_LONGEST_RECORDED = 10_000_000
 # Ticks that are later than this are left to who can give them up [ns].
 _PATIENCE = 5_000_000
 _MONOTONIC, _ABSOLUTE = time.CLOCK_MONOTONIC, 1
@@ -83,7 +83,8 @@ class Bursts:
         period = simulator.settings.tick_ns / pacer.factor if pacer.factor > 0.0 else 0.0
         if self._functions is None or not 0.0 < period <= _LONGEST_TICK or not pacer.is_steady:
             return False
-        due, count = self._run.stretch_ahead(min(int(_LONGEST / period), MOST_AHEAD))
+        most = MOST_AHEAD if self._run.bag is None else int(_LONGEST_RECORDED / period)
+        due, count = self._run.stretch_ahead(most)
         if count < 2 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
             return False
         self._tick(due, count, period)

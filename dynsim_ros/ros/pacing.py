@@ -22,7 +22,8 @@ class Pacer:
 
     factor: simulated seconds per second of the clock, 0 for as fast as possible; now: function
     that returns the clock's time [ns]; longest_lag: what is made up for at most [ns of the
-    clock]. is_steady: whether that clock is the operating system's steady one; missed: ticks given up; late: ticks that were run when the next one was already due.
+    clock]. is_steady: whether that clock is the steady one of the operating system; missed: ticks
+    given up; late: ticks that were run when the next one was already due.
     """
 
     def __init__(self, factor, now=time.monotonic_ns):

@@ -157,7 +157,7 @@ class Run:
         """Take note that the first so many of them were published; record them."""
         simulator, before = self.simulator, self.stamp_ns
         simulator.take(count)
-        self.topics.were_published(due, count)
+        self.topics.were_published(due, simulator.tick, count)
         if self.bag is not None:
             begin = time.monotonic_ns()
             tick_ns = simulator.settings.tick_ns

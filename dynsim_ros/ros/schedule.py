@@ -18,15 +18,13 @@ class Due(NamedTuple):
     What to build at a tick.
 
     rows: Wanted; send: publishes those that are heard, see Sending; others: [(channel,
-    publisher)] of what is no row, the publisher None where nobody listens; count: of
-    messages; skipped: how many are due, but not wanted.
+    publisher)] of what is no row, the publisher None where nobody listens; count: of messages.
     """
 
     rows: Wanted
     send: Callable
     others: list
     count: int
-    skipped: int
 
 
 class Schedule:
@@ -48,7 +46,7 @@ class Schedule:
                        if ticks and (listens or recording)]
         self._intervals = sorted({ticks for _, _, ticks in self.wanted})
         self._due = list(Counter(filter(None, every)).items())
-        self._longer = [ticks for ticks, _ in self._due if ticks > 1]
+        self._longer = [ticks for ticks in self._intervals if ticks > 1]
         self._rows, self._sending = rows, sending
         self._built = {}
 
@@ -83,8 +81,7 @@ class Schedule:
         heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
                  if publisher is not None]
         others = [(channel, publisher) for channel, publisher in due if channel.row is None]
-        return Due(rows, self._sending.of(heard), others, len(due),
-                   self.due_between(tick - 1, tick) - len(due))
+        return Due(rows, self._sending.of(heard), others, len(due))
 
     def due_between(self, first, last):
         """Return how many messages are due at the ticks first + 1 to last, wanted or not."""

@@ -33,7 +33,7 @@ _LARGEST = 1e100
 # Ticks that are computed in one go: they take some memory.
 MOST_AT_ONCE = 1024
 # Single ticks are computed so many ahead, at least and at most, where no step is needed for them.
-_FEWEST_AHEAD, MOST_AHEAD = 3, 32
+_FEWEST_AHEAD, MOST_AHEAD = 3, 64
 
 
 class DivergenceError(ArithmeticError):
