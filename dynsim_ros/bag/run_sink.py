@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable
 import os
 
+import numpy as np
+
 from .run_bag import RunBag
 from ..messages.scene_channels import scene_channels
 from ..messages.tick_rows import TickRows
@@ -58,6 +60,26 @@ class RunSink:
         stamp_ns = self._origin_ns + time_ns
         self._rows.fill(simulator.instant(), stamp_ns, self._all)
         self._bag.put_rows(self._rows, stamp_ns, self._all)
+        self._put_others(simulator, stamp_ns)
+
+    def advance(self, simulator, most):
+        """Advance by some ticks, at most so many, and record what is due at each."""
+        if not self._bag.can_put_many:
+            simulator.advance_tick()
+            self.tick(simulator)
+            return
+        tick, tick_ns = simulator.tick, simulator.settings.tick_ns
+        every = [channel.every(tick_ns) for channel in self._others]
+        first = self._origin_ns + simulator.time_ns + tick_ns
+        instants = simulator.pass_ticks(min([most, *(ticks - tick % ticks for ticks in every)]))
+        stamps = first + tick_ns * np.arange(len(instants.states))
+        self._rows.fill(instants, first, self._all)
+        self._bag.put_many_rows(self._rows, stamps, self._all)
+        self._put_others(simulator, int(stamps[-1]))
+
+    def _put_others(self, simulator, stamp_ns):
+        """Record what is no row and due at a tick."""
+        time_ns, tick_ns = simulator.time_ns, simulator.settings.tick_ns
         messages = {channel.topic: channel.encode(simulator.snapshot(), stamp_ns)
                     for channel in self._others if channel.is_due(simulator.tick, tick_ns)}
         if messages:

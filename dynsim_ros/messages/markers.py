@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from .cdr import Template
@@ -19,9 +21,11 @@ _BODY, _ANCHOR, _SPRING = (0.25, 0.5, 0.9, 0.8), (0.9, 0.3, 0.2, 1.0), (0.6, 0.6
 _AXES = ((0.9, 0.1, 0.1, 1.0), (0.1, 0.7, 0.1, 1.0), (0.1, 0.2, 0.95, 1.0))
 _IDENTITY = (0.0, 0.0, 0.0, 1.0)
 
-# A coil: turns between straight ends, as distance along the spring and angle about it.
-_COIL_ALONG = np.linspace(0.1, 0.9, 65)
-_COIL_ANGLES = np.linspace(0.0, 8 * 2.0 * np.pi, 65)
+# A coil: turns between straight ends. Each point of it lies so far along the spring, and so far to
+# either side; as much as that takes is worked out once.
+_COIL_ALONG = np.linspace(0.1, 0.9, 65).reshape(-1, 1)
+_COIL_ANGLES = np.linspace(0.0, 8 * 2.0 * np.pi, 65).reshape(-1, 1)
+_COIL_COS, _COIL_SIN = np.cos(_COIL_ANGLES), np.sin(_COIL_ANGLES)
 
 
 class _Markers:
@@ -154,15 +158,21 @@ def _end(scene, name, offset, snapshot):
 
 def coil(p, q, radius):
     """Return (n, 3) points of a helix with straight ends from p to q, both (3,) in world [m]."""
+    points = np.empty((len(_COIL_ALONG) + 2, 3))
     along = q - p
-    length = np.linalg.norm(along)
+    points[0], points[-1] = p, q
+    first, second = _across(along.tolist(), radius)
+    points[1:-1] = p + _COIL_ALONG * along + _COIL_COS * first + _COIL_SIN * second
+    return points
+
+
+def _across(along, length):
+    """Return two vectors of a length, (2, 3), at right angles to (3,) and to each other."""
+    size = math.hypot(*along)
     # A spring of no length has no direction either: any will do.
-    u = along / length if length > 1e-9 else np.array([0.0, 0.0, 1.0])
-    across = np.zeros(3)
-    across[np.argmin(np.abs(u))] = 1.0
-    first = across - np.dot(across, u) * u
-    first /= np.linalg.norm(first)
-    second = np.cross(u, first)
-    turns = (np.outer(_COIL_ALONG, along) + radius * np.outer(np.cos(_COIL_ANGLES), first)
-             + radius * np.outer(np.sin(_COIL_ANGLES), second))
-    return np.vstack([p, p + turns, q])
+    u = [a / size for a in along] if size > 1e-9 else [0.0, 0.0, 1.0]
+    least = min(range(3), key=lambda i: abs(u[i]))
+    first = [(i == least) - u[least] * u[i] for i in range(3)]
+    size = math.hypot(*first)
+    x, y, z = (a * length / size for a in first)
+    return np.array([(x, y, z), (u[1] * z - u[2] * y, u[2] * x - u[0] * z, u[0] * y - u[1] * x)])

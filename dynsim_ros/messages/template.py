@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 import struct
 from typing import NamedTuple
 
+import numpy as np
+
 from .checks import check_elements, fields_for
 from .definitions import Field
 from .primitives import code, LITTLE_ENDIAN, number_bytes, SIZES, string_bytes
@@ -53,7 +55,7 @@ class Template:
         self.content = bytes(content)
         self.padding = tuple(padding)
         self._pack = struct.Struct(f'{"".join(layout)}{self.size - end}x').pack
-        self._constant = int.from_bytes(content, 'little')
+        self._constant = np.frombuffer(self.content, np.uint8)
 
     def pack(self, *values) -> bytes:
         """
@@ -69,7 +71,7 @@ class Template:
                                  f'leaves ({", ".join(self.leaves)})') from None
             raise ValueError(f'{self.type_name}: {values} does not fit: {error}') from None
         # Each of the two is zero where the other one is not.
-        return (int.from_bytes(numbers, 'little') | self._constant).to_bytes(self.size, 'little')
+        return (np.frombuffer(numbers, np.uint8) | self._constant).tobytes()
 
 
 def _items(type_name: str, fixed, where: str, prefix: str) -> Iterator[tuple]:

@@ -27,7 +27,8 @@ class Anchors:
     def motion_at(self, time_ns):
         """Return (n, 6) position and velocity at an instant before the next change."""
         motion = self.motion.copy()
-        motion[:, :3] += motion[:, 3:] * ((time_ns - self.since) * 1e-9)
+        if time_ns != self.since:
+            motion[:, :3] += motion[:, 3:] * ((time_ns - self.since) * 1e-9)
         return motion
 
     def under_way(self, i):

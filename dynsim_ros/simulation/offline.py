@@ -21,7 +21,8 @@ class OfflineRun:
     Runs a simulator through timed commands.
 
     commands: [(time_ns, command)] in order of time; sink: has tick(simulator), called at every
-    tick, and command(time_ns, command), called for every command that took effect.
+    tick, and command(time_ns, command), called for every command that took effect. It may have
+    advance(simulator, most) as well: to advance by some ticks, one at least, and take note of each.
     What remains in commands after a run is later than its end.
     """
 
@@ -29,6 +30,7 @@ class OfflineRun:
         self._simulator = simulator
         self.commands = list(commands)
         self._sink = sink
+        self._advance = getattr(sink, 'advance', self._tick)
 
     def run(self, duration, is_stopped=lambda: False):
         """
@@ -36,13 +38,17 @@ class OfflineRun:
 
         Raises DivergenceError, or SceneError for a wrong command.
         """
-        simulator, sink = self._simulator, self._sink
+        simulator = self._simulator
         end = simulator.time_ns + round(duration * SECOND)
-        sink.tick(simulator)
+        self._sink.tick(simulator)
         while simulator.time_ns < end and not is_stopped():
             self._command()
-            simulator.advance_tick()
-            sink.tick(simulator)
+            until = min(end, self.commands[0][0]) if self.commands else end
+            self._advance(simulator, -((simulator.time_ns - until) // simulator.settings.tick_ns))
+
+    def _tick(self, simulator, _most):
+        simulator.advance_tick()
+        self._sink.tick(simulator)
 
     def _command(self):
         """Carry out the commands whose time has come."""

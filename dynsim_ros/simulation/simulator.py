@@ -135,9 +135,7 @@ class Simulator:
 
     def instant(self):
         """Return the Instants of the present one, to be used before anything changes."""
-        anchors = self._anchors
-        return Instants(self._model, anchors.motion, self.time_ns - anchors.since, self._pushes,
-                        self._reference_energy, self._state.reshape(1, -1), 0)
+        return self._instants(self.time_ns, self._state.reshape(1, -1))
 
     def prepare(self):
         """Compile, or load from the disk cache, all that a tick of this scene needs."""
@@ -264,10 +262,13 @@ class Simulator:
 
     def instants_ahead(self, count):
         """Return the Instants of that many of the next ticks whose states are known."""
-        anchors, tick_ns = self._anchors, self.settings.tick_ns
-        return Instants(self._model, anchors.motion, self.time_ns + tick_ns - anchors.since,
-                        self._pushes, self._reference_energy,
-                        self._ahead[self._past:self._past + count], tick_ns)
+        return self._instants(self.time_ns + self.settings.tick_ns,
+                              self._ahead[self._past:self._past + count])
+
+    def _instants(self, first_ns, states):
+        anchors = self._anchors
+        return Instants(self._model, anchors.motion, first_ns - anchors.since, self._pushes,
+                        self._reference_energy, states, self.settings.tick_ns)
 
     def take(self, count):
         """Advance by some ticks, at least one, whose states are known."""
@@ -295,11 +296,24 @@ class Simulator:
         """
         while count > 0:
             even = self._count_even(count)
-            done = self._advance_even(even) if even > 1 else 0
+            done = len(self._advance_even(even)) if even > 1 else 0
             if done < even or even == 0:
                 self.advance_tick()
                 done += 1
             count -= done
+
+    def pass_ticks(self, most):
+        """
+        Advance by some ticks, one at least, in one go; return the Instants of them all.
+
+        They are to be used before anything changes. Raises DivergenceError as above.
+        """
+        even, before = self._count_even(most), self.time_ns
+        states = self._advance_even(even) if even > 1 else ()
+        if len(states) == 0:
+            self.advance_tick()
+            return self.instant()
+        return self._instants(before + self.settings.tick_ns, states)
 
     def advance_to(self, time_ns):
         """Advance by whole ticks to an instant; ValueError if none of them ends there."""
@@ -317,9 +331,9 @@ class Simulator:
         return min(count, MOST_AT_ONCE)
 
     def _advance_even(self, count):
-        """Advance by ticks without a change among them, as far as all is well; return how many."""
+        """Advance by ticks without a change among them, as far as all is well; return states."""
         if self.failure is not None:
-            return 0
+            return ()
         if not self._is_begun:
             self._begin_steps()
         self._forget_ahead()
@@ -340,7 +354,7 @@ class Simulator:
             self._check(states[good], self.time_ns + tick_ns)
         if good == 0 and problem is not None:
             self._give_up(problem, self.time_ns + tick_ns)
-        return good
+        return states[:good]
 
     def run(self, duration):
         """Advance by a duration [s], rounded up to whole ticks; return a Trajectory."""
