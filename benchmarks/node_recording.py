@@ -35,8 +35,9 @@ def step_only(seconds):
     """Return the processor time of the same run without messages and bag [s]."""
     script = ('import time; from dynsim_ros.scene import load_scene; '
               'from dynsim_ros.simulation import Simulator; '
-              f'simulator = Simulator(load_scene({SCENE!r}), rate={RATE}.0); simulator.run(0.1); '
-              f'start = time.process_time(); simulator.run({seconds}.0); '
+              f'simulator = Simulator(load_scene({SCENE!r}), rate={RATE}.0); '
+              'simulator.advance_ticks(100); start = time.process_time(); '
+              f'simulator.advance_ticks({seconds * RATE}); '
               'print(time.process_time() - start)')
     return float(subprocess.run([sys.executable, '-c', script], check=True, text=True,
                                 stdout=subprocess.PIPE).stdout)

@@ -1,0 +1,174 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""Ticks that compiled code waits for and publishes are those that the interpreter makes."""
+
+import threading
+
+from dynsim_ros.cli.rerun import main as rerun
+from dynsim_ros.messages.scene_channels import scene_channels
+from dynsim_ros.messages.tick_rows import TickRows
+from dynsim_ros.ros.bursts import Bursts, prepare_bursts
+from dynsim_ros.ros.clock import ClockPublisher
+from dynsim_ros.ros.histogram import Histogram
+from dynsim_ros.ros.inbox import Mailbox
+from dynsim_ros.ros.own_parameters import OWN
+from dynsim_ros.ros.pacing import Pacer
+from dynsim_ros.ros.run import Run
+from dynsim_ros.ros.sending import prepare_sending
+from dynsim_ros.ros.topics import Topics
+from dynsim_ros.scene import load_scene
+from dynsim_ros.simulation import Simulator
+from dynsim_ros.simulation.simulator import MOST_AHEAD
+import pytest
+import rclpy
+from rclpy.node import Node
+from ros_client import Client, stamps
+
+SCENE, RATE = load_scene('sphere_on_spring'), 1000.0
+POSE = 'sphere/pose'
+
+
+class AllListen:
+    version = 0
+
+    def of(self, create):
+        return create(None)
+
+    def hears(self, publisher):
+        return True
+
+
+class Bench:
+    """A run at the end of its first step, and what lets it burst."""
+
+    def __init__(self, node):
+        simulator = Simulator(SCENE, rate=RATE)
+        simulator.prepare()
+        prepare_sending()
+        prepare_bursts()
+        self.channels = [channel for channel in scene_channels(simulator.scene, simulator.layout)
+                         if channel.row is not None]
+        options = {name: own.default for name, own in OWN.items()}
+        topics = Topics(node, self.channels,
+                        TickRows(self.channels, simulator.layout, reserve=MOST_AHEAD),
+                        AllListen(), options)
+        self.run = Run(simulator, topics, ClockPublisher(node, AllListen()), options, node)
+        while not simulator.known_ahead() > 10:
+            simulator.advance_tick()
+        self.pacer = Pacer(1.0)
+        self.mailbox = Mailbox(self.pacer.now)
+        self.lateness = Histogram()
+        self.bursts = Bursts(self.run, self.pacer, self.mailbox, self.lateness, 0.0)
+
+    def go_on(self):
+        """Let it burst until a tick was run; return how many were: a busy machine may be late."""
+        while not (ticks := self.go()):
+            assert self.went
+        return ticks
+
+    def go(self):
+        """Let it burst once; return how many ticks were run."""
+        before = self.run.simulator.tick
+        self.pacer.restart(self.run.simulator.time_ns)
+        self.went = self.bursts.go()
+        return self.run.simulator.tick - before
+
+
+@pytest.fixture
+def node(discovery):
+    rclpy.init()
+    node = Node('dynsim')
+    yield node
+    node.destroy_node()
+    rclpy.try_shutdown()
+
+
+@pytest.fixture
+def bench(node):
+    return Bench(node)
+
+
+def test_the_messages_are_those_of_single_ticks(bench):
+    run, client = bench.run, Client()
+    try:
+        client.listen({channel.topic: channel.type_name for channel in bench.channels})
+        publishers = run.topics._publishers
+        client.wait(lambda: all(publisher.get_subscription_count() for publisher in publishers))
+        known, first = run.simulator.known_ahead(), run.simulator.tick
+        ticks = bench.go_on()
+        assert 0 < ticks <= known
+        assert run.topics.built == ticks * len(bench.channels) and run.topics.skipped == 0
+        client.wait(lambda: all(len(client.heard[channel.topic]) == ticks
+                                for channel in bench.channels))
+    finally:
+        client.close()
+    single = Simulator(SCENE, rate=RATE)
+    single.advance_ticks(first)
+    rows = TickRows(bench.channels, single.layout)
+    for k in range(ticks):
+        single.advance_tick()
+        rows.fill(single.instant(), single.time_ns, rows.of())
+        assert [client.heard[channel.topic][k] for channel in bench.channels] == [
+            rows.message(i) for i in range(len(bench.channels))]
+    assert run.simulator.memory()['state'] == single.memory()['state']
+
+
+def test_what_arrives_meanwhile_ends_it_before_the_next_tick(bench):
+    done, build = [], bench.run.build_ahead
+
+    def disturbed(*arguments):
+        build(*arguments)
+        bench.mailbox.tell(lambda: done.append(bench.run.simulator.tick))
+
+    bench.mailbox.begin(threading.current_thread())
+    bench.run.build_ahead = disturbed
+    tick = bench.run.simulator.tick
+    assert (bench.go(), bench.went, done) == (0, True, [])
+    bench.mailbox.next_letter().carry_out()
+    assert done == [tick]
+    bench.run.build_ahead = build
+    assert bench.go_on() > 0
+
+
+@pytest.mark.parametrize('prevent', [
+    lambda bench: setattr(bench.run, 'paused', True),
+    lambda bench: setattr(bench.run, 'waiting', True),
+    lambda bench: setattr(bench.pacer, 'factor', 0.0),
+    lambda bench: setattr(bench.pacer, 'factor', 0.1),
+    lambda bench: setattr(bench.pacer, 'is_steady', False),
+    lambda bench: setattr(bench.bursts, '_functions', None),
+    lambda bench: setattr(bench.run.topics._sending._rcl, 'publish', None),
+    lambda bench: setattr(bench.run.topics._sending, '_is_laid_out', False),
+    lambda bench: bench.mailbox.wake()],
+    ids=['paused', 'waiting', 'as fast as possible', 'slow', 'another clock', 'another system',
+         'another rcl', 'another layout', 'woken'])
+def test_the_interpreter_does_it_where_it_has_to(bench, prevent):
+    prevent(bench)
+    assert (bench.go(), bench.went) == (0, False)
+
+
+def test_it_ends_where_the_run_does(bench):
+    run = bench.run
+    run._options['duration'] = run.simulator.time + 0.003
+    assert 0 < bench.go_on() <= 3
+
+
+def test_a_live_run_is_the_same_bits(start, connect):
+    """Paused, at other speeds, commanded, listened to by more: no tick lacks, nor comes twice."""
+    node = start('-p', f'rate:={RATE}', '-p', 'record.enable:=true')
+    client, other = connect(node), connect(node)
+    client.listen({POSE: 'geometry_msgs/msg/PoseStamped'})
+    client.more(POSE, 200)
+    for seconds in (1, 2):
+        client.pause()
+        client.pause(False)
+        client.more(POSE, 50)
+        client.configure({'real_time_factor': 0.5 * seconds})
+        client.set_group({'spring.stiffness': 100.0 + seconds})
+        other.listen({'sphere/twist': 'geometry_msgs/msg/TwistStamped'})
+        client.more(POSE, 100)
+    seen = stamps(client.messages(POSE))
+    assert all(later - before == 1_000_000 for before, later in zip(seen, seen[1:]))
+    node.stop()
+    (bag,) = node.bags
+    assert rerun([str(bag)]) == 0
