@@ -56,8 +56,7 @@ class RunSink:
 
     def tick(self, simulator):
         """Record what is due at a tick."""
-        time_ns, tick_ns = simulator.time_ns, simulator.settings.tick_ns
-        stamp_ns = self._origin_ns + time_ns
+        stamp_ns = self._origin_ns + simulator.time_ns
         self._rows.fill(simulator.instant(), stamp_ns, self._all)
         self._bag.put_rows(self._rows, stamp_ns, self._all)
         self._put_others(simulator, stamp_ns)

@@ -22,7 +22,7 @@ class OfflineRun:
 
     commands: [(time_ns, command)] in order of time; sink: has tick(simulator), called at every
     tick, and command(time_ns, command), called for every command that took effect. It may have
-    advance(simulator, most) as well: to advance by some ticks, one at least, and take note of each.
+    advance(simulator, most) as well: to advance by some ticks, one at least, and note each.
     What remains in commands after a run is later than its end.
     """
 
