@@ -23,6 +23,8 @@ from ..simulation.simulator import MOST_AHEAD
 _LONGEST_TICK = 2_000_000
 # So long a burst lasts at most that is recorded [ns]: what is to be recorded waits until then.
 _LONGEST_RECORDED = 10_000_000
+# After something else had to be done, as a command, less is built that may be of no use.
+_FEW = 8
 # Ticks that are later than this are left to who can give them up [ns].
 _PATIENCE = 5_000_000
 _MONOTONIC, _ABSOLUTE = time.CLOCK_MONOTONIC, 1
@@ -70,6 +72,7 @@ class Bursts:
     def __init__(self, run, pacer, mailbox, lateness, spin):
         self._run, self._pacer, self._mailbox, self._lateness = run, pacer, mailbox, lateness
         self._spin = round(spin * _SECOND)
+        self._most = _FEW
         self._late = np.zeros(MOST_AHEAD, np.int64)
         self._spent = np.zeros(1, np.int64)
         self._instant = np.zeros(3, np.int64)
@@ -83,7 +86,9 @@ class Bursts:
         period = simulator.settings.tick_ns / pacer.factor if pacer.factor > 0.0 else 0.0
         if self._functions is None or not 0.0 < period <= _LONGEST_TICK or not pacer.is_steady:
             return False
-        most = MOST_AHEAD if self._run.bag is None else int(_LONGEST_RECORDED / period)
+        most = self._most
+        if self._run.bag is not None:
+            most = min(most, int(_LONGEST_RECORDED / period))
         due, count = self._run.stretch_ahead(most)
         if count < 2 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
             return False
@@ -103,6 +108,7 @@ class Bursts:
             self._tick_on = prepare_bursts()
         done = self._tick_on(*self._functions, self._instant, deadlines, self._spin,
                              self._mailbox.alarm, self._late, self._spent, due.send.rows)
+        self._most = min(2 * self._most, MOST_AHEAD) if done == count else _FEW
         if done:
             run.was_published(due, done)
             pacer.is_up_to_date()
