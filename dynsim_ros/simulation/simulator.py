@@ -242,7 +242,8 @@ class Simulator:
         other = copy.copy(self)
         other._state, other._pushes = self._state.copy(), self._pushes.copy()
         other._push_ends, other._anchors = dict(self._push_ends), copy.deepcopy(self._anchors)
-        other._steps, other._is_begun = None, False
+        # Entries of kernels are this process's own: a copy may be sent to another one.
+        other._steps, other._is_begun, other._energies = None, False, None
         other._forget_ahead()
         return other
 
