@@ -28,6 +28,7 @@ from ..physics.fused import fused
 from ..physics.jit import formula, part
 from ..physics.lanes import choose, COUNT, lane, lanes_at, put_lanes, spread
 from ..physics.motion import rates
+from ..physics.reach import reach_of_state
 from ..physics.state import omega_at, put_quaternion, quaternion, quaternion_at
 
 _FOURS = DENSE_SIZE // COUNT
@@ -124,16 +125,17 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
         base[i] = choose(from_start, y[i], y_new[i])
         reached[i] = base[i]
     whole, arm = with_arm(model), arm_of_state(model, base)
+    reach = reach_of_state(model, drive, start, base, arm)
     for stage in range(_EXPLICIT_STAGES):
         h = way / (2.0 * (stage + 1))
         for i in range(size):
             a[i] = spread(0.0)
             b[i] = h * choose(from_start, rate[i], rate_new[i])
         begin_arm(arm, h, base, a, b)
-        now = start + h
+        passed = h
         for _ in range(2 * stage + 1):
-            midpoint(whole, drive, size, now, h, base, arm, a, b, state, f)
-            now = now + h
+            midpoint(whole, drive, size, start, passed, h, base, arm, reach, a, b, state, f)
+            passed = passed + h
             for i in range(size):
                 # The one that is ahead comes to lie in b.
                 f[i] = a[i]

@@ -20,6 +20,7 @@ from ..physics.fused import fused
 from ..physics.jit import part
 from ..physics.lanes import choose, COUNT, lanes_at, spread
 from ..physics.motion import rates
+from ..physics.reach import put_reach, reach_of_state
 from ..physics.state import counts
 
 SUBSTEPS = (6, 8, 10, 12, 14, 16, 22)
@@ -33,17 +34,19 @@ def gragg_schedule(substeps=SUBSTEPS, stages=None):
 
 
 @part
-def midpoint(model, drive, size, t, h, y, arm, behind, here, state, f):
+def midpoint(model, drive, size, t, way, h, y, arm, reach, behind, here, state, f):
     """
     Put behind + 2 h f(here) where `behind` was.
 
     model: as from with_arm; behind, here: Lanes, less the state y at the start and its arm: sums
-    of small numbers are rounded less; t: Lanes, the time of `here`; state, f: Cells to use.
+    of small numbers are rounded less; t: [s] of the start; way: Lanes, from it to the time of
+    `here`; state, f: Cells to use.
     """
     for i in range(size):
         state[i] = y[i] + here[i]
     put_arm(arm, here, state)
-    rates(model, drive, t, state, f)
+    put_reach(reach, arm, way, here, state)
+    rates(model, drive, t + way, state, f)
     bodies, rigid = counts(model)
     step = h + h
     for i in range(3 * bodies):
@@ -75,16 +78,17 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
     state = lane_row(model.several, memory, 4, size)
     table = plan.table
     h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
-    now = t + h
+    way = h
     whole, arm = with_arm(model), arm_of_state(model, y)
+    reach = reach_of_state(model, drive, t, y, arm)
     begin_arm(arm, h, y, a, b)
     for i in range(size):
         a[i] = spread(0.0)
         b[i] = h * rate[i]
         first[i] = spread(0.0)
     for row in range(0, plan.rows, 2):
-        midpoint(whole, drive, size, now, h, y, arm, a, b, state, f)
-        now = now + h
+        midpoint(whole, drive, size, t, way, h, y, arm, reach, a, b, state, f)
+        way = way + h
         if row >= plan.first_end:
             ended = lanes_at(table, ENDS + COUNT * row)
             for i in range(size):
@@ -92,12 +96,12 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
                 b[i] = choose(ended, 0.0, b[i])
                 a[i] = choose(ended, h_second * rate[i], a[i])
             restart_arm(arm, ended, h_second, y, a, b)
-            now = choose(ended, t + h_second, now)
+            way = choose(ended, h_second, way)
             h = choose(ended, h_second, h)
         if row == plan.rows - 1:
             break
-        midpoint(whole, drive, size, now, h, y, arm, b, a, state, f)
-        now = now + h
+        midpoint(whole, drive, size, t, way, h, y, arm, reach, b, a, state, f)
+        way = way + h
     second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1 - plan.rows % 2))
     for i in range(size):
         b[i] = choose(second, b[i], 0.0)

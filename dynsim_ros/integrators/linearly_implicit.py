@@ -68,7 +68,7 @@ def gather_group(several, connections, bodies, rigid, p, q, stiffness, natural_l
         put(springs, j + ARMS, p_turn)
         put(springs, j + ARMS + 3, q_turn)
         springs[j + STRENGTH] = strength
-        spring_pull = spring_tension(stiffness[s], length, natural_length[s])
+        spring_pull = spring_tension(stiffness[s], length - natural_length[s])
         springs[j + PULL] = spring_pull - strength * (q_rate - p_rate)
         keep_for_works(works, p.anchor, q.anchor, spring_pull, damping_of(damping, s), p_rate,
                        q_rate, u, j, springs)

@@ -6,7 +6,8 @@ The arm of an attachment point beside the state: d(arm)/dt = omega x arm.
 Forces then need not wait until the offset has been turned by the quaternion, which is only summed
 up beside them. Within a step of high order this is as exact: the arm comes from the quaternion at
 the start of each. For a single body whose inertia is the same about every axis, on a single
-spring; elsewhere arms come from quaternions.
+spring; elsewhere arms come from quaternions. Beside it, and beside the state of a particle on a
+single spring, lies the reach: see there.
 
 States with an arm are Cells; it lies behind the state of a single body, works included.
 """
@@ -27,15 +28,15 @@ _QUATERNION, _OMEGA = quaternion_at(1), omega_at(1, 1)
 
 def kept_end(model, is_absent):
     """
-    Return 0 or 1, the end P or Q whose arm is kept, or None where none is.
+    Return 0 or 1, the end P or Q whose reach, and arm if any, is kept, or None where none is.
 
     model: Model, or the types of its parts as such; is_absent(part): whether a part is None.
     """
     if (not is_absent(model.several) or not is_absent(model.connections)
-            or is_absent(model.round_body) or is_absent(model.springs)):
+            or not is_absent(model.general_body) or is_absent(model.springs)):
         return None
     group = model.springs[0]
-    on_body = [not is_absent(ends.body) for ends in (group.p, group.q)]
+    on_body = [is_absent(ends.anchor) for ends in (group.p, group.q)]
     return on_body.index(True) if on_body.count(True) == 1 else None
 
 
@@ -48,45 +49,50 @@ def turned_offset(ends, y):
 def arm_of_state(model, y):
     """Return the arm (3,) [m] in a state of numbers or Lanes, None where it is not kept."""
     end = kept_end(model, lambda part: part is None)
-    return None if end is None else turned_offset(model.springs[0][end], y)
+    if end is None or model.springs[0][end].body is None:
+        return None
+    return turned_offset(model.springs[0][end], y)
 
 
 @overload(arm_of_state)
 def _arm_of_state(model, y):
-    end = kept_end(_Types(model), _is_none)
-    if end is None:
+    model = Types(model)
+    end = kept_end(model, is_none)
+    if end is None or is_none(model.springs[0][end].body):
         return lambda model, y: None
     return lambda model, y: turned_offset(model.springs[0][end], y)
 
 
 def with_arm(model):
-    """Return the Model for states with an arm; the model itself where none is kept."""
-    if kept_end(model, lambda part: part is None) is None:
+    """Return the Model for states with a reach and an arm; itself where none is kept."""
+    end = kept_end(model, lambda part: part is None)
+    if end is None:
         return model
-    return armed(model)
+    return armed(model, model.springs[0][1 - end], model.springs[0][end])
 
 
 @overload(with_arm)
 def _with_arm(model):
-    if kept_end(_Types(model), _is_none) is None:
+    end = kept_end(Types(model), is_none)
+    if end is None:
         return lambda model: model
-    return lambda model: armed(model)
+    other = 1 - end
+    return lambda model: armed(model, model.springs[0][other], model.springs[0][end])
 
 
 @formula
-def armed(model):
-    """Return a Model whose springs find their arms in the state: they have no offset."""
+def armed(model, p, q):
+    """Return a Model whose spring, from an anchor P to a body at Q, is found in the state."""
     group = model.springs[0]
-    p, q = group.p, group.q
     group = SpringGroup(SpringEnds(p.anchor, p.particle, p.body, None),
                         SpringEnds(q.anchor, q.particle, q.body, None), group.stiffness,
-                        group.natural_length, group.epsilon, group.damping)
+                        group.natural_length, group.epsilon, group.damping, True)
     return Model(model.mass, model.rigid, model.several, model.round_body, model.round_inertia,
                  model.general_body, model.inertia, model.inverse_inertia, model.weight, (group,),
                  model.connections, model.spring_bodies, model.air)
 
 
-class _Types:
+class Types:
     """The types of the parts of a NamedTuple, by name or index, as the parts themselves."""
 
     def __init__(self, numba_type):
@@ -98,10 +104,10 @@ class _Types:
 
     def __getitem__(self, i):
         part = self._parts[i]
-        return _Types(part) if isinstance(part, types.BaseTuple) else part
+        return Types(part) if isinstance(part, types.BaseTuple) else part
 
 
-def _is_none(part):
+def is_none(part):
     return isinstance(part, types.NoneType)
 
 

@@ -99,8 +99,8 @@ def _view(cells_type):
 _reserve_numbers, _reserve_lanes = (_reservation(CellsType(dtype)) for dtype in (FLOAT, LANES))
 _view_numbers, _view_lanes = (_view(CellsType(dtype)) for dtype in (FLOAT, LANES))
 
-# The most that a method keeps at one place for a single body, with its arm, or a single spring.
-SINGLE = 20
+# The most that a method keeps at one place for a single body, with its reach, or a single spring.
+SINGLE = 25
 
 
 def number_cells(several, memory, place, size):

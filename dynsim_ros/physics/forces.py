@@ -18,7 +18,7 @@ from .jit import formula
 from .kinematics import attachment_arm, attachment_position, attachment_rate
 from .spring_damper import (damper_tension, length_and_direction, length_and_inverse_square,
                             spring_tension)
-from .state import ARM, omega_at, quaternion, quaternion_at, velocity_at, work_at
+from .state import ARM, CORRECTION, EXCESS, omega_at, quaternion, quaternion_at, REACH, velocity_at, work_at
 from .vector import accumulate_scaled, add, at, cross, dot, scale, subtract
 
 
@@ -190,8 +190,26 @@ def group_size(connections, stiffness):
 
 
 @formula
+def kept_reach(is_kept, r, y):
+    """Return the vector to Q from P: the one that the state has, or r."""
+    if is_kept is not None:
+        return at(y, REACH)
+    return r
+
+
+@formula
+def spring_extension(is_kept, length, natural_length, y):
+    """Return L - L_n [m]; where the state has what it takes, without the rounding of L."""
+    extension = length - natural_length
+    if is_kept is not None:
+        rounding = fused(-extension, length + natural_length, y[EXCESS])
+        extension = fused(y[CORRECTION], rounding, extension)
+    return extension
+
+
+@formula
 def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_length, epsilon,
-                  damping, anchors, moving, works, t, y, out):
+                  damping, is_kept, anchors, moving, works, t, y, out):
     """
     Add forces and moments of one SpringGroup; t: [s] since the anchors were as given.
 
@@ -201,10 +219,11 @@ def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_
     work = work_at(bodies, rigid)
     for s in range(group_size(connections, stiffness)):
         r, p_arm, q_arm = spring_ends(several, bodies, p, q, anchors, moving, t, s, y)
+        r = kept_reach(is_kept, r, y)
         length, inverse_square = length_and_inverse_square(r, epsilon[s])
         p_turn, q_turn = cross(p_arm, r), cross(q_arm, r)
-        factor = spring_tension(stiffness[s], length, natural_length[s]) * (length
-                                                                            * inverse_square)
+        extension = spring_extension(is_kept, length, natural_length[s], y)
+        factor = spring_tension(stiffness[s], extension) * (length * inverse_square)
         factor = with_damper(several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn,
                              q_turn, inverse_square, works, work, factor, y, out)
         pull(several, bodies, rigid, q.particle, q.body, s, factor, r, q_turn, out)

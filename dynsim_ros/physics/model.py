@@ -38,7 +38,12 @@ class SpringEnds(NamedTuple):
 
 
 class SpringGroup(NamedTuple):
-    """Springs with the same kinds of ends P and Q; damping: None where they have no dampers."""
+    """
+    Springs with the same kinds of ends P and Q.
+
+    damping: None where they have no dampers; is_kept: True where the state has the vector to Q
+    from P (see reach), else None.
+    """
 
     p: SpringEnds
     q: SpringEnds
@@ -46,6 +51,7 @@ class SpringGroup(NamedTuple):
     natural_length: np.ndarray
     epsilon: np.ndarray
     damping: np.ndarray | None
+    is_kept: bool | None = None
 
 
 class ModelAir(NamedTuple):

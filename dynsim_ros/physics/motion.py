@@ -31,8 +31,8 @@ def apply_all_springs(several, connections, bodies, rigid, springs, anchors, mov
     if springs is not None:
         for group in literal_unroll(springs):
             apply_springs(several, connections, bodies, rigid, group.p, group.q, group.stiffness,
-                          group.natural_length, group.epsilon, group.damping, anchors, moving,
-                          works, t, y, out)
+                          group.natural_length, group.epsilon, group.damping, group.is_kept,
+                          anchors, moving, works, t, y, out)
 
 
 @formula

@@ -31,15 +31,15 @@ def length_and_direction(r, epsilon):
 
 
 @formula
-def spring_tension(stiffness, length, natural_length):
-    """Return -k (L - L_n), along u [N]; stiffness k [N/m], lengths [m]."""
-    return -stiffness * (length - natural_length)
+def spring_tension(stiffness, extension):
+    """Return -k (L - L_n), along u [N]; stiffness k [N/m], extension L - L_n [m]."""
+    return -stiffness * extension
 
 
 @formula
 def spring_force(stiffness, length, natural_length, u):
-    """Return -k (L - L_n) u; arguments as above, u: (3,) to Q from P."""
-    return scale(spring_tension(stiffness, length, natural_length), u)
+    """Return -k (L - L_n) u; k [N/m], lengths [m], u: (3,) to Q from P."""
+    return scale(spring_tension(stiffness, length - natural_length), u)
 
 
 @formula

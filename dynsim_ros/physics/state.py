@@ -17,8 +17,10 @@ from .model import body_order
 from .rotation import quaternion_norm
 
 WORKS = ('damper', 'air', 'anchor', 'push')
-# Where the arm lies that is kept beside the state of a single body: see arms.
+# What is kept beside the state of a single body on a single spring, see arms and reach: the arm,
+# the vector to the body from the anchor, and two numbers that its length is found by.
 ARM = 6 + 7 + len(WORKS)
+REACH, EXCESS, CORRECTION = ARM + 3, ARM + 6, ARM + 7
 
 
 @formula

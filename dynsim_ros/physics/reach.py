@@ -1,0 +1,153 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The reach of a spring beside the state: the vector r to the body's attachment point from the anchor.
+
+As a sum of positions in world it has their rounding, which a stiff spring turns into forces. Here
+it is known to twice the digits at the start of a step, and its change d since then is a small
+number with a small rounding. So are L^2 - L_n^2, which changes by d . (2 r + d), and with it the
+extension L - L_n. Where arms are kept, and for a particle on a single spring: see arms.
+"""
+
+from typing import NamedTuple
+
+from numba.extending import overload
+
+from .arms import is_none, kept_end, Types
+from .fused import fused
+from .jit import formula
+from .state import ARM, CORRECTION, EXCESS, REACH
+from .two_sum import two_sum
+from .vector import add, at, put
+
+
+class Reach(NamedTuple):
+    """
+    The reach at the start of a step, of numbers or Lanes.
+
+    vector: (3,) [m]; moving: as in Drive; velocity: (3,) of the anchor [m/s]; excess: L^2 - L_n^2
+    [m^2]; correction: about 1 / (L + L_n) [1/m], where L is not far from L_n.
+    """
+
+    vector: tuple
+    moving: bool | None
+    velocity: tuple
+    excess: float
+    correction: float
+
+
+@formula
+def add_in_two(sums, left, b):
+    """Return the vector sums + b as rounded, and the vector left with what rounding left out."""
+    x, i = two_sum(sums[0], b[0])
+    y, j = two_sum(sums[1], b[1])
+    z, k = two_sum(sums[2], b[2])
+    return (x, y, z), add(left, (i, j, k))
+
+
+@formula
+def anchor_way(t, velocity):
+    """Return the way of an anchor since time 0, negative, in two vectors."""
+    u, v, w = velocity
+    x, y, z = t * u, t * v, t * w
+    return (-x, -y, -z), (-fused(t, u, -x), -fused(t, v, -y), -fused(t, w, -z))
+
+
+@formula
+def difference_of_squares(r, left, natural_length):
+    """Return |r + left|^2 - L_n^2, to the last bit also where the two are nearly the same."""
+    square = natural_length * natural_length
+    total, rest = -square, -fused(natural_length, natural_length, -square)
+    for i in range(3):
+        square = r[i] * r[i]
+        total, more = two_sum(total, square)
+        rest = rest + (more + fused(r[i], r[i], -square)) + (2.0 * r[i]) * left[i]
+    return total + rest
+
+
+@formula
+def with_way(moving, velocity, t, r, left):
+    """Return r, in two vectors, less the way of the anchor."""
+    if moving is not None:
+        way, rest = anchor_way(t, velocity)
+        r, left = add_in_two(r, left, way)
+        left = add(left, rest)
+    return r, left
+
+
+@formula
+def with_offset(arm, r, left):
+    """Return r, in two vectors, to the end of the arm, if there is one."""
+    if arm is not None:
+        r, left = add_in_two(r, left, arm)
+    return r, left
+
+
+@formula
+def reach_from(anchor, natural_length, epsilon, anchors, moving, t, y, arm):
+    """Return the Reach in a state; anchor, natural_length, epsilon: of a SpringGroup of one."""
+    x, y_, z = at(anchors[anchor[0]], 0)
+    velocity = at(anchors[anchor[0]], 3)
+    position = at(y, 0)
+    zero = 0.0 * y[0]
+    r, left = add_in_two(position, (zero, zero, zero), (-x, -y_, -z))
+    r, left = with_offset(arm, r, left)
+    r, left = with_way(moving, velocity, t, r, left)
+    natural, least = natural_length[0], epsilon[0]
+    excess = difference_of_squares(r, left, natural)
+    square = natural * natural
+    return Reach(r, moving, velocity, excess,
+                 natural / (excess + 2.0 * square + least * least))
+
+
+def reach_of_state(model, drive, t, y, arm):
+    """Return the Reach in a state of numbers or Lanes, with its arm; None where none is kept."""
+    end = kept_end(model, lambda part: part is None)
+    if end is None:
+        return None
+    group = model.springs[0]
+    return reach_from(group[1 - end].anchor, group.natural_length, group.epsilon, drive.anchors,
+                      drive.moving, t, y, arm)
+
+
+@overload(reach_of_state)
+def _reach_of_state(model, drive, t, y, arm):
+    end = kept_end(Types(model), is_none)
+    if end is None:
+        return lambda model, drive, t, y, arm: None
+    other = 1 - end
+
+    def found(model, drive, t, y, arm):
+        group = model.springs[0]
+        return reach_from(group[other].anchor, group.natural_length, group.epsilon, drive.anchors,
+                          drive.moving, t, y, arm)
+    return found
+
+
+@formula
+def body_way(arm, here):
+    """Return by how much the attachment point has moved since the start: (3,) [m]."""
+    if arm is not None:
+        return add(at(here, 0), at(here, ARM))
+    return at(here, 0)
+
+
+@formula
+def less_anchor_way(moving, velocity, way, d):
+    """Return d less how far the anchor has moved since the start; way: time since then [s]."""
+    if moving is not None:
+        return (fused(-way, velocity[0], d[0]), fused(-way, velocity[1], d[1]),
+                fused(-way, velocity[2], d[2]))
+    return d
+
+
+@formula
+def put_reach(reach, arm, way, here, state):
+    """Write to a state what is kept of its reach; here: the state less that at the start."""
+    if reach is not None:
+        d = less_anchor_way(reach.moving, reach.velocity, way, body_way(arm, here))
+        r = add(reach.vector, d)
+        put(state, REACH, r)
+        x, y, z = add(reach.vector, r)
+        state[EXCESS] = fused(d[0], x, fused(d[1], y, fused(d[2], z, reach.excess)))
+        state[CORRECTION] = reach.correction
