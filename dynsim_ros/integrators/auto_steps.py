@@ -129,7 +129,7 @@ class AutoSteps(Walk):
 
     def _postpone(self):
         self._next_trial = self.explicit.counts[STEPS] + self._wait
-        self._wait = min(2 * self._wait, _LONGEST_WAIT)
+        self._wait = min(self._wait * 5 // 4, _LONGEST_WAIT)
 
     def _try_stiff(self, limit, grid):
         """Go over to the stiff method if it can take a step that is long enough."""
