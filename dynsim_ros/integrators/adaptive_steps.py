@@ -5,7 +5,7 @@
 import numpy as np
 
 from .adaptive import (advance, BASE, BUDGET_SPENT, CLOCK_SIZE, COUNTS_SIZE, END, FLOOR, Grid,
-                       MARGIN, NEXT, REJECTED, STEP, STEP_TOO_SHORT, STEPS, TO_BEGIN)
+                       MARGIN, NEXT, REACHED, REJECTED, STEP, STEP_TOO_SHORT, STEPS, TO_BEGIN)
 from .entry import entry
 from .memory import DENSE_SIZE, new_memory
 from .stiffness import EXPLICIT_REACH, spring_rates
@@ -65,8 +65,9 @@ class Walk:
 
     def end_at(self, time_ns):
         """Return the state at an instant at which a step ends."""
-        self.go(time_ns - self.current.origin, self.current.nowhere)
-        return self.current.states[1].copy()
+        steps = self.current
+        self.go(time_ns - steps.origin, steps.nowhere)
+        return self.current.end.copy()
 
     def cut(self, time_ns):
         """Return the state at an instant; a step that has gone past it is taken back to it."""
@@ -87,9 +88,11 @@ class AdaptiveSteps(Walk):
 
     def __init__(self, method, tolerance, model, drive, size, springs, watch=0.0):
         self.method, self.tolerance, self.watch, self.calm = method, tolerance, watch, 0.0
-        self.clock, self.counts = np.zeros(CLOCK_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
+        # In one piece, which is faster to be cleared.
+        self._kept = np.zeros(CLOCK_SIZE + COUNTS_SIZE)
+        self.clock, self.counts = self._kept[:CLOCK_SIZE], self._kept[CLOCK_SIZE:].view(np.int64)
         self.states, self._dense = np.zeros((4, size)), np.zeros(DENSE_SIZE * size)
-        self._end = self.states[1]
+        self.end = self.states[1]
         self.origin = 0
         # The first and the last arguments of advance, which stay as they are.
         self._arguments = (
@@ -109,7 +112,7 @@ class AdaptiveSteps(Walk):
         self.origin, clock = time_ns, self.clock
         clock[BASE] = clock[END] = 0.0
         clock[STEP] = TO_BEGIN
-        self._end[:] = state
+        self.end[:] = state
 
     def follow(self, other, step):
         """Go on where other steps have come to, with a first step of a given length [s]."""
@@ -120,8 +123,7 @@ class AdaptiveSteps(Walk):
 
     def reset(self):
         """Forget all: the next beginning is the first one."""
-        self.clock.fill(0.0)
-        self.counts.fill(0)
+        self._kept.fill(0.0)
 
     def prepare(self):
         """Compile, or load from the cache, what the steps need, or do nothing."""
@@ -142,7 +144,9 @@ class AdaptiveSteps(Walk):
 
     def go(self, limit, grid):
         """Take steps as run does; raise IntegrationError if the method cannot go on."""
-        self.check(self.run(limit, grid, self.budget), self.budget)
+        status = self.run(limit, grid, self.budget)
+        if status != REACHED:
+            self.check(status, self.budget)
 
     def take_back(self, time_ns):
         """Undo the last step if it went past an instant; return the usual length of a step."""
