@@ -18,7 +18,8 @@ from .jit import formula
 from .kinematics import attachment_arm, attachment_position, attachment_rate
 from .spring_damper import (damper_tension, length_and_direction, length_and_inverse_square,
                             spring_tension)
-from .state import ARM, CORRECTION, EXCESS, omega_at, quaternion, quaternion_at, REACH, velocity_at, work_at
+from .state import (ARM, CORRECTION, EXCESS, omega_at, quaternion, quaternion_at, REACH,
+                    velocity_at, work_at)
 from .vector import accumulate_scaled, add, at, cross, dot, scale, subtract
 
 

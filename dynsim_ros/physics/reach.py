@@ -1,7 +1,7 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The reach of a spring beside the state: the vector r to the body's attachment point from the anchor.
+The reach of a spring beside the state: the vector r from its anchor to where it holds the body.
 
 As a sum of positions in world it has their rounding, which a stiff spring turns into forces. Here
 it is known to twice the digits at the start of a step, and its change d since then is a small
@@ -18,7 +18,7 @@ from .fused import fused
 from .jit import formula
 from .state import ARM, CORRECTION, EXCESS, REACH
 from .two_sum import two_sum
-from .vector import add, at, put
+from .vector import add, at, put, scale
 
 
 class Reach(NamedTuple):
@@ -47,15 +47,15 @@ def add_in_two(sums, left, b):
 
 @formula
 def anchor_way(t, velocity):
-    """Return the way of an anchor since time 0, negative, in two vectors."""
-    u, v, w = velocity
+    """Return how far an anchor has moved since time 0, negative, as the sum of two vectors."""
+    u, v, w = scale(-1.0, velocity)
     x, y, z = t * u, t * v, t * w
-    return (-x, -y, -z), (-fused(t, u, -x), -fused(t, v, -y), -fused(t, w, -z))
+    return (x, y, z), (fused(t, u, -x), fused(t, v, -y), fused(t, w, -z))
 
 
 @formula
 def difference_of_squares(r, left, natural_length):
-    """Return |r + left|^2 - L_n^2, to the last bit also where the two are nearly the same."""
+    """Return |r + left|^2 - L_n^2, exact also where the two are nearly the same."""
     square = natural_length * natural_length
     total, rest = -square, -fused(natural_length, natural_length, -square)
     for i in range(3):
@@ -86,11 +86,8 @@ def with_offset(arm, r, left):
 @formula
 def reach_from(anchor, natural_length, epsilon, anchors, moving, t, y, arm):
     """Return the Reach in a state; anchor, natural_length, epsilon: of a SpringGroup of one."""
-    x, y_, z = at(anchors[anchor[0]], 0)
-    velocity = at(anchors[anchor[0]], 3)
-    position = at(y, 0)
-    zero = 0.0 * y[0]
-    r, left = add_in_two(position, (zero, zero, zero), (-x, -y_, -z))
+    place, velocity = at(anchors[anchor[0]], 0), at(anchors[anchor[0]], 3)
+    r, left = add_in_two(at(y, 0), (0.0, 0.0, 0.0), scale(-1.0, place))
     r, left = with_offset(arm, r, left)
     r, left = with_way(moving, velocity, t, r, left)
     natural, least = natural_length[0], epsilon[0]
