@@ -122,6 +122,9 @@ class Page:
             self.when(trail, lambda value: setattr(stage, 'trail_seconds', value))
             names = gui.add_checkbox('names', stage.names_shown)
             self.when(names, lambda shown: setattr(stage, 'names_shown', shown))
+            shadows = gui.add_checkbox('shadows', stage.shadows_shown,
+                                       hint='slow where there is no graphics card')
+            self.when(shadows, lambda shown: setattr(stage, 'shadows_shown', shown))
             followed = gui.add_dropdown(
                 'follow', ('nothing', *stage.bodies), initial_value=stage.followed or 'nothing')
             self.when(followed, self._follow)

@@ -50,7 +50,7 @@ class Space:
         return cls(scene, np.array([*points, *around], float))
 
     def draw(self, api, parent):
-        """Draw the floor with the directions of the axes, and choose the view at the start."""
+        """Draw the floor with the directions of the axes; return the light from above."""
         cell = _round(self.size / 8.0)
         width = cell * 2 * math.ceil(0.65 * self.size / cell)
         x, y, _ = self.middle
@@ -64,8 +64,6 @@ class Space:
         api.configure_environment_map(hdri=None)
         api.add_light_hemisphere('/sky', sky_color=(255, 255, 255), ground_color=(150, 150, 150),
                                  intensity=2.0)
-        api.add_light_directional('/sun', intensity=1.6, cast_shadow=True,
-                                  position=self.middle + self.size * np.array([0.7, -0.8, 2.0]))
         corner = origin - (0.5 * width, 0.5 * width, 0.0)
         length = 0.16 * self.size
         api.add_frame(f'{parent}/axes', axes_length=length, axes_radius=0.03 * length,
@@ -73,6 +71,8 @@ class Space:
         for i, name in enumerate('xyz'):
             api.add_label(f'{parent}/axes/{name}', name, anchor='center-center',
                           position=1.25 * length * np.eye(3)[i])
+        return api.add_light_directional(
+            '/sun', intensity=1.6, position=self.middle + self.size * np.array([0.7, -0.8, 2.0]))
 
     def look(self, camera):
         """Set where a viser camera begins."""

@@ -28,7 +28,7 @@ class Stage:
         self.followed = scene.bodies[0].name if space.is_left else None
         # All that is drawn lies in it: to follow a body is to move the world.
         self._world = api.add_frame(WORLD, show_axes=False)
-        space.draw(api, WORLD)
+        self._sun = space.draw(api, WORLD)
         self.bodies = {body.name: BodyView(api, f'{WORLD}/{body.name}', body, space, i)
                        for i, body in enumerate(scene.bodies)}
         self.anchors = {anchor.name: AnchorView(api, f'{WORLD}/{anchor.name}', anchor, space)
@@ -58,6 +58,15 @@ class Stage:
         self._names_shown = shown
         for view in (*self.bodies.values(), *self.anchors.values()):
             view.label.visible = shown
+
+    @property
+    def shadows_shown(self):
+        """Tell whether things cast shadows; they take as long to draw as all else together."""
+        return self._sun.cast_shadow
+
+    @shadows_shown.setter
+    def shadows_shown(self, shown):
+        self._sun.cast_shadow = shown
 
     def set_scene(self, scene):
         """Draw the scene with other quantities: the same members, of other sizes."""

@@ -151,6 +151,12 @@ def test_arrows_are_the_forces(page, bag):
     page.wait(lambda: page.nodes['/world/forces/sphere/damper']['visible'])
 
 
+def test_shadows_are_cast_if_wanted(page):
+    assert not page.nodes['/sun']['cast_shadow']
+    page.enter('shadows', True)
+    page.wait(lambda: page.nodes['/sun']['cast_shadow'])
+
+
 def test_trail_is_where_the_body_was(page, bag):
     shown_at(page, bag, 1.5)
     page.enter('trail [s]', 1.0)
