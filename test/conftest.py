@@ -33,8 +33,8 @@ def pytest_report_header():
     lines = [f'DDS domain {_DOMAIN}, discovery on this machine only']
     if chromium() is None:
         lines.append(f'the tests in test/browser are left out: {MISSING}')
-    if not interfaces.can_be_had():
-        lines.append(f'those of the standard services are left out: {interfaces.MISSING}')
+    if interfaces.left_out():
+        lines.append(f'{", ".join(interfaces.left_out())} left out: {interfaces.MISSING}')
     return lines
 
 

@@ -1,48 +1,35 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Frames on /tf: recorded always, broadcast where tf2_msgs is installed.
-
-PyPI has no tf2_msgs. In its place there is a package of that name whose TFMessage is another
-type of message: what is compared are the bytes, which mean what they do under any type.
-"""
-
-import os
+"""Frames on /tf: recorded always, broadcast where tf2_msgs is installed."""
 
 from mcap.reader import make_reader
 import pytest
-from rosbags.typesys import get_typestore, Stores
-from scene_topics import MARKERS, POSE, xyz
+from scene_topics import POSE, xyz
 
-JAZZY = get_typestore(Stores.ROS2_JAZZY)
+# Building the type takes long on a busy machine.
+pytestmark = pytest.mark.timeout(400)
+TF = 'tf2_msgs/msg/TFMessage'
 
 
 @pytest.fixture(scope='module')
-def node(start, tmp_path_factory):
-    folder = tmp_path_factory.mktemp('stand_in')
-    (folder / 'tf2_msgs' / 'msg').mkdir(parents=True)
-    (folder / 'tf2_msgs' / '__init__.py').touch()
-    (folder / 'tf2_msgs' / 'msg' / '__init__.py').write_text(
-        'from visualization_msgs.msg import MarkerArray as TFMessage\n')
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('PYTHONPATH', f'{folder}{os.pathsep}{os.environ["PYTHONPATH"]}')
-        return start('-r', '__ns:=/lab', name='/lab/dynsim')
+def node(tf2_types, start):
+    return start('-r', '__ns:=/lab', name='/lab/dynsim')
 
 
 @pytest.fixture(scope='module')
 def client(node, connect):
     client = connect(node)
-    client.listen({'/tf': MARKERS, 'sphere/pose': POSE})
+    client.listen({'/tf': TF, 'sphere/pose': POSE})
     return client
 
 
-def broadcast(data):
+def broadcast(messages):
     """Return {stamp [ns]: {child frame: position and orientation}} of messages of /tf."""
     found = {}
-    for part in (part for message in data for part in JAZZY.deserialize_cdr(
-            message, 'tf2_msgs/msg/TFMessage').transforms):
+    for part in (part for message in messages for part in message.transforms):
         stamp = part.header.stamp.sec * 10 ** 9 + part.header.stamp.nanosec
         q = part.transform.rotation
+        assert part.header.frame_id == 'world'
         found.setdefault(stamp, {})[part.child_frame_id] = (
             *xyz(part.transform.translation), q.x, q.y, q.z, q.w)
     return found
@@ -52,7 +39,7 @@ def test_it_is_where_the_poses_are(client):
     client.wait(lambda: len(client.heard['/tf']) >= 5)
     client.pause()
     client.drain()
-    found = broadcast(client.heard['/tf'])
+    found = broadcast(client.messages('/tf'))
     poses = {}
     for message in client.messages('sphere/pose'):
         q, stamp = message.pose.orientation, message.header.stamp
@@ -87,6 +74,11 @@ def test_bags_have_it_too(client, node):
     client.steps(8, 'sphere/pose')
     client.record(False)
     with open(node.bags[0], 'rb') as stream:
-        found = [message.data for *_, message in make_reader(stream).iter_messages(['/tf'])]
+        entries = list(make_reader(stream).iter_messages(['/tf']))
+    found = [message.data for *_, message in entries]
     # what was there at the beginning, and the two that were broadcast
     assert found[-2:] == client.heard['/tf'] and len(found) <= 3
+    # the definition that is shipped is that of the type that is broadcast
+    (publisher,) = client.node.get_publishers_info_by_topic('/tf')
+    _, channel, _ = entries[0]
+    assert str(publisher.topic_type_hash) == channel.metadata['topic_type_hash']
