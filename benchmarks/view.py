@@ -45,12 +45,12 @@ COLUMNS = ('page', 'pictures a second', 'gap, 95 % [ms]', 'longest gap [ms]',
            'messages a second', 'kB a second', 'server [ms]', 'page [ms]', 'its scripts [ms]',
            'drawing [ms]')
 ABOUT_SMOOTHNESS = """
-Played at the speed of the run, in a browser without a graphics card: what such a card does takes
-time on the same cores as all else. The last columns are CPU time for each picture: of the viewer,
-of the process of the page, of the scripts in it, and of the process that draws in place of a card.
-The page is 1280 x 760 pixels, the size of a phone, and of a stamp. Where *drawing* is by far the largest,
-a graphics card makes the playback smooth; what the others leave of 33 ms is what the page has to spare
-at 30 pictures a second.
+Played at the speed of the run, in a browser without a graphics card: what such a card does
+takes time on the same cores as all else. The page is 1280 x 760 pixels, of the size of a phone,
+and of a stamp. The last columns are CPU time for each picture: of the viewer, of the process of
+the page, of the scripts in it, and of the process that draws in place of a card. The scripts and
+the rest of the page fit into the 33 ms between pictures that the viewer sends; the drawing does
+not.
 
 """
 
