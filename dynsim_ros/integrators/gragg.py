@@ -45,7 +45,7 @@ def midpoint(model, drive, size, t, way, h, y, arm, reach, behind, here, state, 
     for i in range(size):
         state[i] = y[i] + here[i]
     put_arm(arm, here, state)
-    put_reach(reach, arm, way, here, state)
+    put_reach(reach, way, here, state)
     rates(model, drive, t + way, state, f)
     bodies, rigid = counts(model)
     step = h + h

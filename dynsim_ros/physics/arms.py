@@ -6,8 +6,7 @@ The arm of an attachment point beside the state: d(arm)/dt = omega x arm.
 Forces then need not wait until the offset has been turned by the quaternion, which is only summed
 up beside them. Within a step of high order this is as exact: the arm comes from the quaternion at
 the start of each. For a single body whose inertia is the same about every axis, on a single
-spring; elsewhere arms come from quaternions. Beside it, and beside the state of a particle on a
-single spring, lies the reach: see there.
+spring to an anchor; elsewhere arms come from quaternions. Beside it lies the reach: see there.
 
 States with an arm are Cells; it lies behind the state of a single body, works included.
 """
@@ -28,15 +27,15 @@ _QUATERNION, _OMEGA = quaternion_at(1), omega_at(1, 1)
 
 def kept_end(model, is_absent):
     """
-    Return 0 or 1, the end P or Q whose reach, and arm if any, is kept, or None where none is.
+    Return 0 or 1, the end P or Q whose arm is kept, or None where none is.
 
     model: Model, or the types of its parts as such; is_absent(part): whether a part is None.
     """
     if (not is_absent(model.several) or not is_absent(model.connections)
-            or not is_absent(model.general_body) or is_absent(model.springs)):
+            or is_absent(model.round_body) or is_absent(model.springs)):
         return None
     group = model.springs[0]
-    on_body = [is_absent(ends.anchor) for ends in (group.p, group.q)]
+    on_body = [not is_absent(ends.body) for ends in (group.p, group.q)]
     return on_body.index(True) if on_body.count(True) == 1 else None
 
 
@@ -49,16 +48,13 @@ def turned_offset(ends, y):
 def arm_of_state(model, y):
     """Return the arm (3,) [m] in a state of numbers or Lanes, None where it is not kept."""
     end = kept_end(model, lambda part: part is None)
-    if end is None or model.springs[0][end].body is None:
-        return None
-    return turned_offset(model.springs[0][end], y)
+    return None if end is None else turned_offset(model.springs[0][end], y)
 
 
 @overload(arm_of_state)
 def _arm_of_state(model, y):
-    model = Types(model)
-    end = kept_end(model, is_none)
-    if end is None or is_none(model.springs[0][end].body):
+    end = kept_end(Types(model), is_none)
+    if end is None:
         return lambda model, y: None
     return lambda model, y: turned_offset(model.springs[0][end], y)
 

@@ -99,7 +99,7 @@ def _view(cells_type):
 _reserve_numbers, _reserve_lanes = (_reservation(CellsType(dtype)) for dtype in (FLOAT, LANES))
 _view_numbers, _view_lanes = (_view(CellsType(dtype)) for dtype in (FLOAT, LANES))
 
-# The most that a method keeps at one place for a single body, with its reach, or a single spring.
+# The most that a method keeps at one place for a single body, with arm and reach, or a spring.
 SINGLE = 25
 
 

@@ -6,7 +6,7 @@ The reach of a spring beside the state: the vector r from its anchor to where it
 As a sum of positions in world it has their rounding, which a stiff spring turns into forces. Here
 it is known to twice the digits at the start of a step, and its change d since then is a small
 number with a small rounding. So are L^2 - L_n^2, which changes by d . (2 r + d), and with it the
-extension L - L_n. Where arms are kept, and for a particle on a single spring: see arms.
+extension L - L_n. It is kept where arms are, to whose ends it goes: see there.
 """
 
 from typing import NamedTuple
@@ -76,19 +76,11 @@ def with_way(moving, velocity, t, r, left):
 
 
 @formula
-def with_offset(arm, r, left):
-    """Return r, in two vectors, to the end of the arm, if there is one."""
-    if arm is not None:
-        r, left = add_in_two(r, left, arm)
-    return r, left
-
-
-@formula
 def reach_from(anchor, natural_length, epsilon, anchors, moving, t, y, arm):
     """Return the Reach in a state; anchor, natural_length, epsilon: of a SpringGroup of one."""
     place, velocity = at(anchors[anchor[0]], 0), at(anchors[anchor[0]], 3)
     r, left = add_in_two(at(y, 0), (0.0, 0.0, 0.0), scale(-1.0, place))
-    r, left = with_offset(arm, r, left)
+    r, left = add_in_two(r, left, arm)
     r, left = with_way(moving, velocity, t, r, left)
     natural, least = natural_length[0], epsilon[0]
     excess = difference_of_squares(r, left, natural)
@@ -122,14 +114,6 @@ def _reach_of_state(model, drive, t, y, arm):
 
 
 @formula
-def body_way(arm, here):
-    """Return by how much the attachment point has moved since the start: (3,) [m]."""
-    if arm is not None:
-        return add(at(here, 0), at(here, ARM))
-    return at(here, 0)
-
-
-@formula
 def less_anchor_way(moving, velocity, way, d):
     """Return d less how far the anchor has moved since the start; way: time since then [s]."""
     if moving is not None:
@@ -139,10 +123,10 @@ def less_anchor_way(moving, velocity, way, d):
 
 
 @formula
-def put_reach(reach, arm, way, here, state):
+def put_reach(reach, way, here, state):
     """Write to a state what is kept of its reach; here: the state less that at the start."""
     if reach is not None:
-        d = less_anchor_way(reach.moving, reach.velocity, way, body_way(arm, here))
+        d = less_anchor_way(reach.moving, reach.velocity, way, add(at(here, 0), at(here, ARM)))
         r = add(reach.vector, d)
         put(state, REACH, r)
         x, y, z = add(reach.vector, r)

@@ -42,7 +42,7 @@ def test_rates_with_the_arm_are_those_without(spring):
     drive = Drive(np.array([[0.1, 0.2, 2.0, 0.3, 0.0, -0.1]]), True, None, True)
     arm = arm_of_state(model, y)
     beside = np.concatenate([y, arm, np.zeros(5)])
-    put_reach(reach_of_state(model, drive, 0.3, y, arm), arm, 0.0, np.zeros(ARM + 3), beside)
+    put_reach(reach_of_state(model, drive, 0.3, y, arm), 0.0, np.zeros(ARM + 3), beside)
     found, exact = np.zeros(len(y)), np.zeros(len(y))
     rates(with_arm(model), drive, 0.3, beside, found)
     rates(model, drive, 0.3, y, exact)
@@ -55,9 +55,9 @@ def test_rates_with_the_arm_are_those_without(spring):
 
 
 @pytest.mark.parametrize('scene', [
-    load_scene('two_anchors'), load_scene('spinning_box'),
+    load_scene('particle_on_spring'), load_scene('two_anchors'), load_scene('spinning_box'),
     load_scene('double_pendulum_of_spheres'), replace(SCENE, springs=())],
-    ids=['two springs', 'box', 'two bodies', 'no spring'])
+    ids=['particle', 'two springs', 'box', 'two bodies', 'no spring'])
 def test_elsewhere_there_is_none(scene):
     model, y = start_of(scene)
     assert arm_of_state(model, y) is None
