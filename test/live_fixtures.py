@@ -1,9 +1,11 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Live nodes for tests: each module starts its own."""
+"""Live nodes for tests, of which each module starts its own; and one in the test's own process."""
 
 from live_node import LiveNode
 import pytest
+import rclpy
+from rclpy.node import Node
 from ros_client import Client
 from tree import ROOT
 
@@ -46,3 +48,13 @@ def connect(discovery):
     yield connect
     for client in made:
         client.close()
+
+
+@pytest.fixture
+def node_here(discovery):
+    """Give a node in this process."""
+    rclpy.init()
+    node = Node('dynsim')
+    yield node
+    node.destroy_node()
+    rclpy.try_shutdown()

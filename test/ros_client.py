@@ -169,6 +169,11 @@ class Client:
         """Call ~/record; return the response."""
         return self.call('record', SetBool, data=data)
 
+    def recorder_status(self):
+        """Return the recorder's status in the next /diagnostics, which are listened to."""
+        array, *_ = self.more('/diagnostics')
+        return array.status[3]
+
     def step(self):
         """Call ~/step; return the response."""
         return self.call('step', Trigger)

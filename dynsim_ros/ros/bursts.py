@@ -14,6 +14,7 @@ import time
 import numpy as np
 
 from .calling import call
+from .pacing import SECOND
 from .sending import no_rows, publish_block, Together
 from ..integrators.entry import entry
 from ..physics.jit import kernel
@@ -28,7 +29,6 @@ _FEW = 8
 # Ticks that are later than this are left to who can give them up [ns].
 _PATIENCE = 5_000_000
 _MONOTONIC, _ABSOLUTE = time.CLOCK_MONOTONIC, 1
-_SECOND = 1_000_000_000
 
 
 @kernel
@@ -46,18 +46,18 @@ def _tick_on(sleep, clock, instant, deadlines, spin, alarm, late, spent, rows):
         now = 0
         while now < deadline:
             call(clock, (_MONOTONIC, instant[2]))
-            now = instant[0] * _SECOND + instant[1]
+            now = instant[0] * SECOND + instant[1]
             if alarm[0] != 0:
                 return k
             wake = deadline - spin
             if now < wake:
-                instant[0], instant[1] = wake // _SECOND, wake % _SECOND
+                instant[0], instant[1] = wake // SECOND, wake % SECOND
                 call(sleep, (_MONOTONIC, _ABSOLUTE, instant[2], 0))
         late[k] = now - deadline
         if late[k] > _PATIENCE or publish_block(rows, k) < rows.publishers.shape[0]:
             return k
         call(clock, (_MONOTONIC, instant[2]))
-        spent[0] += instant[0] * _SECOND + instant[1] - now
+        spent[0] += instant[0] * SECOND + instant[1] - now
     return deadlines.shape[0]
 
 
@@ -71,7 +71,7 @@ class Bursts:
 
     def __init__(self, run, pacer, mailbox, lateness, spin):
         self._run, self._pacer, self._mailbox, self._lateness = run, pacer, mailbox, lateness
-        self._spin = round(spin * _SECOND)
+        self._spin = round(spin * SECOND)
         self._most = _FEW
         self._late = np.zeros(MOST_AHEAD, np.int64)
         self._spent = np.zeros(1, np.int64)

@@ -92,14 +92,11 @@ class Topics:
             others[channel.topic] = data = channel.encode(simulator.snapshot(), stamp_ns)
             if publisher is not None:
                 publisher.publish(data)
-        self._count(due, simulator.tick, 1)
+        self.were_published(due, simulator.tick, 1)
         return due.rows, others
 
     def were_published(self, due, last, ticks):
         """Count the messages of so many ticks up to the last one; a Due has those of each."""
-        self._count(due, last, ticks)
-
-    def _count(self, due, last, ticks):
         built = due.count * ticks
         self.built += built
         self.skipped += self._schedule.due_between(last - ticks, last) - built

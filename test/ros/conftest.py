@@ -3,7 +3,7 @@
 """Live nodes for tests of the node."""
 
 from interfaces import left_out, standard_types, tf2_types
-from live_fixtures import connect, discovery, start
+from live_fixtures import connect, discovery, node_here, start
 
-__all__ = ['connect', 'discovery', 'standard_types', 'start', 'tf2_types']
+__all__ = ['connect', 'discovery', 'node_here', 'standard_types', 'start', 'tf2_types']
 collect_ignore = left_out()

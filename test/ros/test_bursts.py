@@ -4,6 +4,7 @@
 
 import threading
 
+from all_listen import AllListen
 from dynsim_ros.cli.rerun import main as rerun
 from dynsim_ros.messages.scene_channels import scene_channels
 from dynsim_ros.messages.tick_rows import TickRows
@@ -20,22 +21,10 @@ from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation import Simulator
 from dynsim_ros.simulation.simulator import MOST_AHEAD
 import pytest
-import rclpy
-from rclpy.node import Node
 from ros_client import Client, stamps
 
 SCENE, RATE = load_scene('sphere_on_spring'), 1000.0
 POSE = 'sphere/pose'
-
-
-class AllListen:
-    version = 0
-
-    def of(self, create):
-        return create(None)
-
-    def hears(self, publisher):
-        return True
 
 
 class Bench:
@@ -75,17 +64,8 @@ class Bench:
 
 
 @pytest.fixture
-def node(discovery):
-    rclpy.init()
-    node = Node('dynsim')
-    yield node
-    node.destroy_node()
-    rclpy.try_shutdown()
-
-
-@pytest.fixture
-def bench(node):
-    return Bench(node)
+def bench(node_here):
+    return Bench(node_here)
 
 
 def test_the_messages_are_those_of_single_ticks(bench):

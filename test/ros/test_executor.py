@@ -6,9 +6,7 @@ import time
 
 from dynsim_ros.ros.executor import EventsExecutor, new_executor
 import pytest
-import rclpy
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
 
 
 class Deaf(SingleThreadedExecutor):
@@ -37,15 +35,6 @@ class Restless(SingleThreadedExecutor):
             super().spin_once(timeout_sec=0.0)
 
 
-@pytest.fixture
-def node(discovery):
-    rclpy.init()
-    node = Node('tried')
-    yield node
-    node.destroy_node()
-    rclpy.shutdown()
-
-
 def kind_of(node, fast):
     executor = new_executor(node, fast)
     assert executor.get_nodes() == [node]
@@ -54,10 +43,10 @@ def kind_of(node, fast):
     return type(executor).__name__
 
 
-def test_the_fast_one_works_here(node):
-    assert kind_of(node, EventsExecutor) == 'EventsExecutor'
+def test_the_fast_one_works_here(node_here):
+    assert kind_of(node_here, EventsExecutor) == 'EventsExecutor'
 
 
 @pytest.mark.parametrize('fast', [None, Deaf, Broken, Restless])
-def test_what_does_not_work_is_not_used(node, fast):
-    assert kind_of(node, fast) == 'SingleThreadedExecutor'
+def test_what_does_not_work_is_not_used(node_here, fast):
+    assert kind_of(node_here, fast) == 'SingleThreadedExecutor'

@@ -42,12 +42,6 @@ def disk(kind, node, client):
     return kind(node)
 
 
-def last_told(client):
-    """Return the recorder's status in the next diagnostics."""
-    (array, *_) = client.more('/diagnostics')
-    return array.status[3]
-
-
 def fill(disk, node, client):
     """Let the bag find no room any more, wait until that is told; return the bag."""
     client.record(True)
@@ -62,14 +56,14 @@ def fill(disk, node, client):
 
 def test_full_disk_that_has_room_again(disk, node, client):
     path = fill(disk, node, client)
-    status = client.wait(lambda: (found := last_told(client)).level == b'\x02' and found)
+    status = client.wait(lambda: (found := client.recorder_status()).level == b'\x02' and found)
     assert f'{path.name} cannot be written: {disk.reason}' in status.message
     values = {item.key: int(item.value) for item in status.values if item.key != 'file'}
     assert 0 < values['waiting'] < values['may wait'] and values['lost'] == 0
     client.more('sphere/pose', 20)
     disk.empty()
     client.wait(lambda: 'is written again' in node.output)
-    client.wait(lambda: last_told(client).level == b'\x00')
+    client.wait(lambda: client.recorder_status().level == b'\x00')
     assert 'lost' not in client.record(False).message
     client.configure({'rate': 100.0})
     with open_bag(path) as bag:

@@ -37,12 +37,6 @@ def summary(path):
     return found
 
 
-def last_told(client):
-    """Return the recorder's status in the next diagnostics."""
-    (array, *_) = client.more('/diagnostics')
-    return array.status[3]
-
-
 def test_stop_and_start_name_the_file(node, client):
     response = client.record(False)
     assert response.success
@@ -122,7 +116,7 @@ def test_a_reset_that_cannot_record_says_so_and_goes_on(node, client):
     client.more('sphere/pose', 3)
     assert '[ERROR]' in node.output[before:]
     assert 'record.directory: /proc/nowhere cannot be written to' in node.output[before:]
-    assert last_told(client).message == 'not recording'
+    assert client.recorder_status().message == 'not recording'
     client.configure({'record.directory': 'runs'})
 
 

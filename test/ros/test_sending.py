@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows come to a subscriber as they are, whichever way they are published."""
 
+from all_listen import AllListen
 from dynsim_ros.messages.scene_channels import scene_channels
 from dynsim_ros.messages.tick_rows import TickRows
 from dynsim_ros.ros import topics as topics_module
@@ -15,20 +16,10 @@ from dynsim_ros.simulation import Simulator
 import pytest
 import rclpy
 from rclpy._rclpy_pybind11 import RCLError
-from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from ros_client import Client
 
 STAMP = 7_000_000_123
-
-
-@pytest.fixture
-def node(discovery):
-    rclpy.init()
-    node = Node('dynsim')
-    yield node
-    node.destroy_node()
-    rclpy.try_shutdown()
 
 
 @pytest.fixture
@@ -46,8 +37,8 @@ def pairs_of(rows, node):
             for i, channel in enumerate(rows.channels)]
 
 
-def test_every_way_sends_what_the_rows_hold(node, rows):
-    pairs = pairs_of(rows, node)
+def test_every_way_sends_what_the_rows_hold(node_here, rows):
+    pairs = pairs_of(rows, node_here)
     client = Client()
     try:
         client.listen({channel.topic: channel.type_name for channel in rows.channels})
@@ -68,28 +59,27 @@ def test_every_way_sends_what_the_rows_hold(node, rows):
         client.close()
 
 
-def test_an_error_is_that_of_rclpy(node, rows):
-    send = Sending(rows).of(pairs_of(rows, node))
+def test_an_error_is_that_of_rclpy(node_here, rows):
+    send = Sending(rows).of(pairs_of(rows, node_here))
     send()
     rclpy.shutdown()
     with pytest.raises(RCLError, match='context is invalid'):
         send()
 
 
-def test_without_compiled_code_rclpy_publishes(node, rows, monkeypatch):
+def test_without_compiled_code_rclpy_publishes(node_here, rows, monkeypatch):
     monkeypatch.setattr('numba.config.DISABLE_JIT', 1)
     assert Rcl().publish is None
-    assert type(Sending(rows).of(pairs_of(rows, node))) is OneByOne
+    assert type(Sending(rows).of(pairs_of(rows, node_here))) is OneByOne
 
 
-def test_a_layout_that_is_not_that_of_ros_is_found_at_the_start(node, rows, monkeypatch):
+def test_a_layout_that_is_not_that_of_ros_is_found_at_the_start(node_here, rows, monkeypatch):
     warnings = []
     monkeypatch.setattr(topics_module, 'layout_fault', lambda channels: 'sphere/pose: differs')
-    monkeypatch.setattr(node, 'get_logger', lambda: type('Log', (), {'warning': warnings.append}))
+    monkeypatch.setattr(node_here, 'get_logger',
+                        lambda: type('Log', (), {'warning': warnings.append}))
     simulator = Simulator(load_scene('sphere_on_spring'))
-    audience = type('All', (), {'version': 0, 'of': lambda self, create: create(None),
-                                'hears': lambda self, publisher: True})()
-    topics = Topics(node, rows.channels, rows, audience,
+    topics = Topics(node_here, rows.channels, rows, AllListen(),
                     {name: own.default for name, own in OWN.items()})
     assert warnings == ['sphere/pose: differs']
     send = topics.schedule(simulator.settings.tick_ns, False).due(0).send
