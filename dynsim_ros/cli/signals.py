@@ -32,7 +32,8 @@ class Signals:
     def __init__(self):
         """Take over the signals of this process."""
         self.requested = False
-        self._holding = False
+        # A signal that comes before the program is run is noted.
+        self._holding = True
         # Within a callback from C, Python reports an exception and drops it.
         report = sys.unraisablehook
         sys.unraisablehook = lambda dropped: (
@@ -45,6 +46,9 @@ class Signals:
     def run(self, program: Callable[[], int], stopped: int = 0) -> int:
         """Run a program and return its exit status, or `stopped` if it was ended at its start."""
         try:
+            self._holding = False
+            if self.requested:
+                raise Interrupted
             return program()
         except Interrupted:
             return stopped
