@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dynsim_ros.integrators import (adaptive_steps, dop853_tableau, fixed_steps, METHODS,
                                     radau_tableau)
 from dynsim_ros.integrators.dense_output import (dense_explicit, DENSE_SIZE, dense_stiff,
-                                                 evaluate_dense, explicit_table, radau_table,
-                                                 stiff_table)
+                                                 explicit_table, make_unit, radau_table,
+                                                 stiff_table, write_state)
 from dynsim_ros.integrators.dop853 import dense_dop853, dop853
 from dynsim_ros.integrators.gragg import gragg, gragg_schedule
 from dynsim_ros.integrators.memory import new_memory
@@ -100,7 +100,8 @@ class ByHand:
                   self.rates(t + h, y_new), self.memory, coefficients)
         out = np.tile(y, (len(fractions), 1))
         for row, fraction in zip(out, fractions):
-            evaluate_dense(self.bodies, self.rigid, self.size, coefficients, 2 * fraction - 1, row)
+            write_state(self.size, coefficients, 2 * fraction - 1, row)
+            make_unit(self.bodies, self.rigid, row)
         return out
 
 

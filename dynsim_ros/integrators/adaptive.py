@@ -16,18 +16,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .dense_output import build_dense, write_states
+from .dense_output import build_dense, make_unit, write_state, write_two_states
 from .dop853 import dop853
 from .error_norm import error_norm
 from .gragg import gragg
 from .lane_schedule import Schedule
 from .logarithm import binary_logarithm, binary_power
-from .memory import lane_row, load, number_row, store
+from .memory import load, number_row, store
 from .radau import radau
 from .stiff import stiff
 from .stormer import stormer
 from ..physics.jit import formula, kernel
-from ..physics.lanes import COUNT
 from ..physics.motion import rates
 from ..physics.state import counts, moving_size, normalise, omega_at, quaternion_at
 
@@ -185,14 +184,13 @@ def place_in_step(grid, number, clock, per_half):
 
 @formula
 def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y, rate,
-              y_new, rate_new, error, memory, dense):
+              y_new, rate_new, memory, dense):
     """Write the states of the grid that lie in the last step; build the dense output first."""
-    lanes = lane_row(model.several, memory, 1, size)
     per_half = 2.0 / clock[STEP]
-    while grid.done[0] < grid.states.shape[0]:
-        done = grid.done[0]
-        memory[0] = place_in_step(grid, done, clock, per_half)
-        if memory[0] > 1.0:
+    first, done, count = grid.done[0], grid.done[0], grid.states.shape[0]
+    while done < count:
+        s = place_in_step(grid, done, clock, per_half)
+        if s > 1.0:
             break
         if clock[DENSE] == 0.0:
             counted[EVALUATIONS] += build_dense(
@@ -200,16 +198,17 @@ def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted,
                 tableaux.dense, size, clock[BASE] + clock[END] - clock[STEP], clock[STEP], y,
                 rate, y_new, rate_new, memory, dense)
             clock[DENSE] = 1.0
-            memory[0] = place_in_step(grid, done, clock, per_half)
-        together = 1
-        if done + COUNT <= grid.states.shape[0]:
-            for k in range(1, COUNT):
-                memory[k] = place_in_step(grid, done + k, clock, per_half)
-            if memory[COUNT - 1] <= 1.0:
-                together = COUNT
-        write_states(bodies, rigid, size, dense, done, together, memory, error, lanes,
-                     grid.states)
-        grid.done[0] = done + together
+        s_next = place_in_step(grid, done + 1, clock, per_half)
+        if s_next <= 1.0 and done + 1 < count:
+            write_two_states(size, dense, s, grid.states[done], s_next, grid.states[done + 1])
+            done += 2
+        else:
+            write_state(size, dense, s, grid.states[done])
+            done += 1
+    # Behind the others: numbers that were just written four at a time are slow to be read again.
+    for number in range(first, done):
+        make_unit(bodies, rigid, grid.states[number])
+    grid.done[0] = done
 
 
 @formula
@@ -292,7 +291,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
         if clock[STEP] > 0.0 and place_in_step(grid, grid.done[0], clock,
                                                2.0 / clock[STEP]) <= 1.0:
             fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y,
-                      rate, y_new, rate_new, error, memory, dense)
+                      rate, y_new, rate_new, memory, dense)
         target = (limit - np.int64(clock[BASE]) * 1000000000) * 1e-9
         if grid.done[0] >= grid.states.shape[0] or clock[END] >= target:
             break

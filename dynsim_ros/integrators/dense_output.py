@@ -4,10 +4,14 @@
 The state within a step, as a polynomial; computed only for steps in which somebody wants it.
 
 After an explicit step: Hermite's interpolation of states and rates at both ends and at four
-instants between, which are computed by Gragg's method from the nearer end, one in each lane.
+instants between, which are computed by Gragg's method from the nearer end, one in each lane, and
+of the changes of the rates at both ends, which cost one evaluation more.
 After a linearly implicit one: Lagrange's interpolation of states at both ends and at eight
 instants between, computed from the start, since what is stiff cannot be followed backwards. dop853
 and radau have dense outputs of their own.
+
+The coefficients are kept by powers of s: those of a power for all numbers of the state lie side by
+side, so that four numbers are evaluated at once.
 """
 
 from fractions import Fraction
@@ -23,91 +27,124 @@ from .memory import DENSE_SIZE, lane_row, STAGES
 from .radau import dense_radau
 from .radau_tableau import nodes
 from .rational import inverse
-from ..physics.arms import arm_of_state, begin_arm, swap_arms, with_arm
+from ..physics.arms import arm_of_state, begin_arm, with_arm
 from ..physics.fused import fused
 from ..physics.jit import formula, part
-from ..physics.lanes import choose, COUNT, lane, lanes_at, put_lanes, spread
+from ..physics.lanes import choose, COUNT, lane, lanes_at, put_lanes, spread, total
 from ..physics.motion import rates
 from ..physics.reach import reach_of_state
-from ..physics.state import omega_at, put_quaternion, quaternion, quaternion_at
+from ..physics.state import omega_at, quaternion_at
 
-_FOURS = DENSE_SIZE // COUNT
+# Coefficients of even powers of s come from sums of what is known at s and -s, those of odd powers
+# from differences. Their weights, by ascending power, are dealt with in fours; the last are zero.
+_FOURS = -(-DENSE_SIZE // (2 * COUNT))
+_WEIGHTS = COUNT * _FOURS
 
 # Instants within a step, on s: near the roots of the polynomials that are best for either.
-_EXPLICIT_NODES = [Fraction(s, 100) for s in (-77, -29, 29, 77)]
-_STIFF_NODES = [Fraction(s, 100) for s in (-92, -74, -48, -16, 16, 48, 74, 92)]
+# They lie on both sides of the middle; these are the ones behind it.
+_EXPLICIT_NODES = [Fraction(s, 1000) for s in (240, 675)]
+_STIFF_NODES = [Fraction(s, 100) for s in (16, 48, 74, 92)]
 _EXPLICIT_STAGES = 6
+# How far before and behind the ends rates are compared, in steps: what the comparison leaves out
+# goes as its square, what rounding makes of it as one over it.
+_NEARBY = 2.0 ** -15
 _STIFF_STAGES = 7
 
 
-def _powers(nodes, derivatives):
+def _weights(values, derivatives, seconds, parity):
     """
-    Return the rows, one for each power of s, of the weights of values, then of derivatives.
+    Return the rows, one for each datum, of its weights in the powers of one parity.
 
-    nodes: where values are given, s = -1 first (its value is taken as zero); derivatives: where
-    derivatives with respect to s are given.
+    values, derivatives, seconds: at which s > 0 there are values, first and second derivatives
+    with respect to s; each datum is a sum or difference of two, at s and -s; parity: 0 or 1.
     """
-    nodes_used = nodes[1:]
-    count = len(nodes) + len(derivatives)
-    rows = [[s ** d for d in range(count)] for s in nodes]
-    rows += [[d * s ** (d - 1) if d else Fraction(0) for d in range(count)] for s in derivatives]
-    return [[row[nodes.index(s)] for s in nodes_used] + row[len(nodes):]
-            for row in inverse(rows)]
+    powers = range(parity, 2 * len(values + derivatives + seconds), 2)
+    rows = [[s ** d for d in powers] for s in values]
+    rows += [[d * s ** max(d - 1, 0) for d in powers] for s in derivatives]
+    rows += [[d * (d - 1) * s ** max(d - 2, 0) for d in powers] for s in seconds]
+    # A datum is twice the even or odd part.
+    return [[weight / 2 for weight in column] for column in zip(*inverse(rows))]
 
 
-# Places of the parts of the tables: the instants, the weights of the sequences, then a column for
-# each of these, with its weights in all powers: the lanes' values, the lanes' rates (or second
-# values), the value at the end, and the rates at the start and at the end.
-_TARGETS, _SEQUENCES, _COLUMNS = 0, 2 * COUNT, 4 * COUNT
-_AT_END, _RATE_AT_START, _RATE_AT_END = 2 * COUNT, 2 * COUNT + 1, 2 * COUNT + 2
+# Places of the parts of the tables: the instants, the weights of the sequences, how near rates are
+# compared, then the weights of the data: of all in even powers, then of all in odd ones.
+_TARGETS, _SEQUENCES, _NEAR, _DATA = 0, 2 * COUNT, 4 * COUNT, 5 * COUNT
+# Data of an explicit step: values at the end and at the nodes, rates there, changes of the rates
+# at the end; of a stiff one: values at the end and at the nodes.
+_EXPLICIT_DATA, _STIFF_DATA = 7, 5
+
+
+def _table(sequences, *known):
+    """Return a table with the weights of sequences and data; known: see _weights."""
+    weights = [row for parity in (0, 1) for row in _weights(*known, parity)]
+    table = np.zeros(_DATA + _WEIGHTS * len(weights))
+    table[_SEQUENCES:_SEQUENCES + len(sequences)] = sequences
+    for number, row in enumerate(weights):
+        place = _DATA + _WEIGHTS * number
+        table[place:place + len(row)] = row
+    return table
 
 
 @lru_cache
 def explicit_table():
     """Return the packed table of the interpolation after an explicit step."""
-    ends = [Fraction(-1), Fraction(1)]
-    nodes = [ends[0], *_EXPLICIT_NODES, ends[1]]
-    table = np.zeros(_COLUMNS + DENSE_SIZE * (_RATE_AT_END + 1))
-    # In fractions of the step, from the start or back from the end.
-    table[:COUNT] = [(s + 1) / 2 if s < 0 else (s - 1) / 2 for s in _EXPLICIT_NODES]
-    table[COUNT:2 * COUNT] = [float(s < 0) for s in _EXPLICIT_NODES]
+    places, end = [Fraction(1), *_EXPLICIT_NODES], Fraction(1)
     substeps = list(range(2, 2 * _EXPLICIT_STAGES + 1, 2))
     weights = extrapolation_weights(substeps, 2, _EXPLICIT_STAGES)
-    table[_SEQUENCES:_SEQUENCES + len(substeps)] = [weights[n] for n in substeps]
-    for d, row in enumerate(_powers(nodes, nodes)):
-        values, rates_ = row[:5], row[5:]
-        table[_COLUMNS + d::DENSE_SIZE] = [*values[:4], *rates_[1:5], values[4], rates_[0],
-                                           rates_[5]]
+    table = _table([weights[n] for n in substeps], places, places, [end])
+    # In fractions of the step: on from the start, back from the end to behind the middle.
+    ahead = [(1 - s) / 2 for s in _EXPLICIT_NODES]
+    table[:COUNT] = [*ahead, *(-fraction for fraction in ahead)]
+    table[COUNT:2 * COUNT] = [1.0, 1.0, 0.0, 0.0]
+    # On both sides of the start, and of the end.
+    table[_NEAR:_NEAR + COUNT] = [-_NEARBY, _NEARBY, -_NEARBY, _NEARBY]
     return table
 
 
 @lru_cache
 def stiff_table():
     """Return the packed table of the interpolation after a linearly implicit step."""
-    nodes = [Fraction(-1), *_STIFF_NODES, Fraction(1)]
-    table = np.zeros(_COLUMNS + DENSE_SIZE * (_AT_END + 1))
-    table[:2 * COUNT] = [(s + 1) / 2 for s in _STIFF_NODES]
     substeps = list(range(1, _STIFF_STAGES + 1))
     weights = extrapolation_weights(substeps, 1, _STIFF_STAGES)
-    table[_SEQUENCES:_SEQUENCES + len(substeps)] = [weights[n] for n in substeps]
-    for d, row in enumerate(_powers(nodes, [])):
-        table[_COLUMNS + d::DENSE_SIZE] = row
+    table = _table([weights[n] for n in substeps], [Fraction(1), *_STIFF_NODES], [], [])
+    table[:COUNT] = [(1 - s) / 2 for s in _STIFF_NODES]
+    table[COUNT:2 * COUNT] = [(1 + s) / 2 for s in _STIFF_NODES]
     return table
 
 
 @formula
-def column(table, number, powers):
-    """Return the weights of a column in four powers of s; powers: which four of them."""
-    return lanes_at(table, _COLUMNS + DENSE_SIZE * number + COUNT * powers)
+def add_datum(table, number, count, four, even, odd, sums):
+    """
+    Add what a datum has in four even and four odd powers to their coefficients.
+
+    number: of the datum, of `count`; four: which powers, from the lowest; even, odd: its sum and
+    its difference over s and -s.
+    """
+    place = _DATA + _WEIGHTS * number + COUNT * four
+    return (fused(lanes_at(table, place), even, sums[0]),
+            fused(lanes_at(table, place + _WEIGHTS * count), odd, sums[1]))
+
+
+@formula
+def put_powers(size, dense, four, i, sums):
+    """Write coefficients of number i of the state, see add_datum, to `dense`."""
+    for k in range(COUNT):
+        for parity in range(2):
+            power = 2 * (COUNT * four + k) + parity
+            if power < DENSE_SIZE:
+                dense[size * power + i] = lane(sums[parity], k)
 
 
 @lru_cache
 def radau_table():
     """Return the rows of the interpolation of the stages of a collocation method."""
     stages = [2 * c - 1 for c in nodes()]
+    nodes_used = [Fraction(-1), *stages]
+    powers = inverse([[s ** d for d in range(len(nodes_used))] for s in nodes_used])
     rows = np.zeros(STAGES * DENSE_SIZE)
-    for d, row in enumerate(_powers([Fraction(-1), *stages], [])):
-        rows[STAGES * d:STAGES * (d + 1)] = row
+    for d, row in enumerate(powers):
+        # The value at the start is taken as zero.
+        rows[STAGES * d:STAGES * (d + 1)] = row[1:]
     return rows
 
 
@@ -133,18 +170,16 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
             b[i] = h * choose(from_start, rate[i], rate_new[i])
         begin_arm(arm, h, base, a, b)
         passed = h
-        for _ in range(2 * stage + 1):
+        for pair in range(stage + 1):
             midpoint(whole, drive, size, start, passed, h, base, arm, reach, a, b, state, f)
             passed = passed + h
-            for i in range(size):
-                # The one that is ahead comes to lie in b.
-                f[i] = a[i]
-                a[i] = b[i]
-                b[i] = f[i]
-            swap_arms(arm, a, b)
+            if pair == stage:
+                break
+            midpoint(whole, drive, size, start, passed, h, base, arm, reach, b, a, state, f)
+            passed = passed + h
         weight = table[_SEQUENCES + stage]
         for i in range(size):
-            reached[i] = reached[i] + weight * b[i]
+            reached[i] = reached[i] + weight * a[i]
 
 
 @part
@@ -152,60 +187,93 @@ def dense_explicit(model, drive, table, size, t, step, y, rate, y_new, rate_new,
     """Write the polynomials of a step; return the number of evaluations in a row."""
     reached = lane_row(model.several, memory, 3, size)
     f = lane_row(model.several, memory, 2, size)
+    nearby = lane_row(model.several, memory, 5, size)
+    changing = lane_row(model.several, memory, 4, size)
     fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory, reached)
-    now = choose(lanes_at(table, COUNT), t, t + step) + step * lanes_at(table, _TARGETS)
-    rates(model, drive, now, reached, f)
+    from_start, near = lanes_at(table, COUNT), step * lanes_at(table, _NEAR)
+    begin = choose(from_start, t, t + step)
+    rates(model, drive, begin + step * lanes_at(table, _TARGETS), reached, f)
+    for i in range(size):
+        nearby[i] = fused(near, choose(from_start, rate[i], rate_new[i]),
+                          choose(from_start, y[i], y_new[i]))
+    rates(model, drive, begin + near, nearby, changing)
+    # Of a difference over twice the distance, to the second derivative with respect to s.
+    per_difference = 0.125 * step / _NEARBY
     half = 0.5 * step
+    # From a difference over twice the distance to the second derivative with respect to s.
+    per_difference = 0.125 * step / _NEARBY
     for i in range(size):
         values, slopes = reached[i] - y[i], half * f[i]
-        for powers in range(_FOURS):
-            sums = column(table, _AT_END, powers) * (y_new[i] - y[i])
-            sums = fused(column(table, _RATE_AT_START, powers), half * rate[i], sums)
-            sums = fused(column(table, _RATE_AT_END, powers), half * rate_new[i], sums)
-            for k in range(COUNT):
-                sums = fused(column(table, k, powers), lane(values, k), sums)
-                sums = fused(column(table, COUNT + k, powers), lane(slopes, k), sums)
-            put_lanes(dense, DENSE_SIZE * i + COUNT * powers, sums)
-        dense[DENSE_SIZE * i] += y[i]
-    return _EXPLICIT_STAGES * _EXPLICIT_STAGES + 1
+        change = y_new[i] - y[i]
+        at_start = per_difference * (lane(changing[i], 1) - lane(changing[i], 0))
+        at_end = per_difference * (lane(changing[i], 3) - lane(changing[i], 2))
+        for four in range(_FOURS):
+            sums = (spread(0.0), spread(0.0))
+            sums = add_datum(table, 0, _EXPLICIT_DATA, four, change, change, sums)
+            # A derivative of an even function is odd.
+            sums = add_datum(table, 3, _EXPLICIT_DATA, four, half * (rate_new[i] - rate[i]),
+                             half * (rate_new[i] + rate[i]), sums)
+            sums = add_datum(table, 6, _EXPLICIT_DATA, four, at_end + at_start, at_end - at_start,
+                             sums)
+            for k in range(2):
+                before, behind = lane(values, k), lane(values, k + 2)
+                sums = add_datum(table, 1 + k, _EXPLICIT_DATA, four, behind + before,
+                                 behind - before, sums)
+                before, behind = lane(slopes, k), lane(slopes, k + 2)
+                sums = add_datum(table, 4 + k, _EXPLICIT_DATA, four, behind - before,
+                                 behind + before, sums)
+            put_powers(size, dense, four, i, sums)
+        dense[i] += y[i]
+    return _EXPLICIT_STAGES * _EXPLICIT_STAGES + 2
+
+
+@formula
+def stiff_fan_out(model, drive, table, targets, size, t, step, y, memory, here, f, responses,
+                  reached):
+    """
+    Write how far the state has come at four instants between, one in each lane, to `reached`.
+
+    targets: where in the table the instants are; here, f, responses: Cells to use.
+    """
+    way = step * lanes_at(table, targets)
+    for i in range(size):
+        reached[i] = spread(0.0)
+    for stage in range(_STIFF_STAGES):
+        h = way / (stage + 1.0)
+        now = spread(t)
+        for i in range(size):
+            here[i] = spread(y[i])
+        for _ in range(stage + 1):
+            linearly_implicit_substep(model, drive, now, h, memory, here, f, responses)
+            now = now + h
+        weight = table[_SEQUENCES + stage]
+        for i in range(size):
+            reached[i] = reached[i] + weight * (here[i] - y[i])
 
 
 @formula
 def dense_stiff(model, drive, table, size, t, step, y, y_new, memory, dense):
     """Write the polynomials of a linearly implicit step; return the number of evaluations."""
     here = lane_row(model.several, memory, 0, size)
-    reached = lane_row(model.several, memory, 1, size)
     f = lane_row(model.several, memory, 2, size)
     responses = lane_row(model.several, memory, 3, size)
+    early = lane_row(model.several, memory, 1, size)
+    late = lane_row(model.several, memory, 4, size)
+    stiff_fan_out(model, drive, table, _TARGETS, size, t, step, y, memory, here, f, responses,
+                  early)
+    stiff_fan_out(model, drive, table, _TARGETS + COUNT, size, t, step, y, memory, here, f,
+                  responses, late)
     for i in range(size):
-        for powers in range(_FOURS):
-            put_lanes(dense, DENSE_SIZE * i + COUNT * powers,
-                      column(table, _AT_END, powers) * (y_new[i] - y[i]))
-    for batch in range(2):
-        way = step * lanes_at(table, _TARGETS + COUNT * batch)
-        for i in range(size):
-            reached[i] = spread(0.0)
-        for stage in range(_STIFF_STAGES):
-            h = way / (stage + 1.0)
-            now = spread(t)
-            for i in range(size):
-                here[i] = spread(y[i])
-            for _ in range(stage + 1):
-                linearly_implicit_substep(model, drive, now, h, memory, here, f, responses)
-                now = now + h
-            weight = table[_SEQUENCES + stage]
-            for i in range(size):
-                reached[i] = reached[i] + weight * (here[i] - y[i])
-        for i in range(size):
-            for powers in range(_FOURS):
-                place = DENSE_SIZE * i + COUNT * powers
-                sums = lanes_at(dense, place)
-                for k in range(COUNT):
-                    weights = column(table, COUNT * batch + k, powers)
-                    sums = fused(weights, lane(reached[i], k), sums)
-                put_lanes(dense, place, sums)
-    for i in range(size):
-        dense[DENSE_SIZE * i] += y[i]
+        change = y_new[i] - y[i]
+        for four in range(_FOURS):
+            sums = (spread(0.0), spread(0.0))
+            sums = add_datum(table, 0, _STIFF_DATA, four, change, change, sums)
+            for k in range(COUNT):
+                before, behind = lane(early[i], k), lane(late[i], k)
+                sums = add_datum(table, 1 + k, _STIFF_DATA, four, behind + before,
+                                 behind - before, sums)
+            put_powers(size, dense, four, i, sums)
+        dense[i] += y[i]
     return _STIFF_STAGES * (_STIFF_STAGES + 1)
 
 
@@ -225,33 +293,42 @@ def build_dense(stiff_plan, dop853_data, radau_data, model, drive, table, size, 
 
 
 @formula
-def evaluate_dense(bodies, rigid, size, dense, s, y):
-    """Write the state at s, from -1 at the start of the step to 1 at its end, to Cells y."""
-    for i in range(size):
-        x = dense[DENSE_SIZE * i + DENSE_SIZE - 1] + 0.0 * s
-        for d in range(DENSE_SIZE - 2, -1, -1):
-            x = fused(x, s, dense[DENSE_SIZE * i + d])
-        y[i] = x
-    for i in range(quaternion_at(bodies), omega_at(bodies, rigid), 4):
-        # The norm is near 1: one step of Newton's method is exact.
-        q = quaternion(y, i)
-        factor = 1.5 - 0.5 * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-        put_quaternion(y, i, (factor * q[0], factor * q[1], factor * q[2], factor * q[3]))
+def evaluate_dense(size, dense, s, i):
+    """Return numbers i to i + 3 of the state at s, from -1 at the start of the step to 1."""
+    square = s * s
+    even = lanes_at(dense, size * (DENSE_SIZE - 2) + i)
+    odd = lanes_at(dense, size * (DENSE_SIZE - 1) + i)
+    for power in range(DENSE_SIZE - 4, -2, -2):
+        even = fused(even, square, lanes_at(dense, size * power + i))
+        odd = fused(odd, square, lanes_at(dense, size * (power + 1) + i))
+    return fused(odd, s, even)
 
 
 @formula
-def write_states(bodies, rigid, size, dense, place, count, memory, y, lanes, states):
-    """
-    Write the states at `count` instants to states[place:]; count: 1 or COUNT.
+def write_state(size, dense, s, state):
+    """Write the state at s to state: (size,); its quaternions are left as they come out."""
+    for i in range(0, size, COUNT):
+        # The last four may overlap those before them.
+        first = min(i, size - COUNT)
+        put_lanes(state, first, evaluate_dense(size, dense, s, first))
 
-    memory[:count]: the instants, on s; y, lanes: Cells of numbers and of Lanes to use.
-    """
-    if count == 1:
-        evaluate_dense(bodies, rigid, size, dense, memory[0], y)
-        for i in range(size):
-            states[place, i] = y[i]
-    else:
-        evaluate_dense(bodies, rigid, size, dense, lanes_at(memory, 0), lanes)
-        for i in range(size):
-            for k in range(COUNT):
-                states[place + k, i] = lane(lanes[i], k)
+
+@formula
+def write_two_states(size, dense, s, state, s_next, state_next):
+    """Write the states at two instants: faster than one after the other."""
+    for i in range(0, size, COUNT):
+        first = min(i, size - COUNT)
+        # Both before the first is written: coefficients in registers serve both.
+        numbers = evaluate_dense(size, dense, s, first)
+        numbers_next = evaluate_dense(size, dense, s_next, first)
+        put_lanes(state, first, numbers)
+        put_lanes(state_next, first, numbers_next)
+
+
+@formula
+def make_unit(bodies, rigid, state):
+    """Normalise the quaternions of a state: their norms are near 1."""
+    for i in range(quaternion_at(bodies), omega_at(bodies, rigid), COUNT):
+        q = lanes_at(state, i)
+        # One step of Newton's method is exact.
+        put_lanes(state, i, (1.5 - 0.5 * total(q * q)) * q)

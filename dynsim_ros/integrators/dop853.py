@@ -85,9 +85,9 @@ def times(size, slope, dense):
     """Multiply the polynomials by (1 + slope s) / 2."""
     for i in range(size):
         for d in range(_DEGREE, 0, -1):
-            j = DENSE_SIZE * i + d
-            dense[j] = 0.5 * dense[j] + 0.5 * slope * dense[j - 1]
-        dense[DENSE_SIZE * i] = 0.5 * dense[DENSE_SIZE * i]
+            j = size * d + i
+            dense[j] = 0.5 * dense[j] + 0.5 * slope * dense[j - size]
+        dense[i] = 0.5 * dense[i]
 
 
 @formula
@@ -106,17 +106,17 @@ def dense_dop853(model, drive, data, size, t, h, y, rate, y_new, rate_new, memor
             k[i] = 0.0
         add_stages(size, data, D_AT + ALL_STAGES * term, ALL_STAGES, h, memory, k)
         for i in range(size):
-            dense[DENSE_SIZE * i] = dense[DENSE_SIZE * i] + k[i]
+            dense[i] = dense[i] + k[i]
         times(size, 1.0 if term % 2 == 1 else -1.0, dense)
     for i in range(size):
-        dense[DENSE_SIZE * i] += 2.0 * (y_new[i] - y[i]) - h * (rate_new[i] + rate[i])
+        dense[i] += 2.0 * (y_new[i] - y[i]) - h * (rate_new[i] + rate[i])
     times(size, 1.0, dense)
     for i in range(size):
-        dense[DENSE_SIZE * i] += h * rate[i] - (y_new[i] - y[i])
+        dense[i] += h * rate[i] - (y_new[i] - y[i])
     times(size, -1.0, dense)
     for i in range(size):
-        dense[DENSE_SIZE * i] += y_new[i] - y[i]
+        dense[i] += y_new[i] - y[i]
     times(size, 1.0, dense)
     for i in range(size):
-        dense[DENSE_SIZE * i] += y[i]
+        dense[i] += y[i]
     return STAGES + 2

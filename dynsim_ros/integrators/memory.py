@@ -19,9 +19,9 @@ from ..physics.lanes import COUNT
 LANE_ROWS = 8
 NUMBER_ROWS = 24
 
-# Coefficients of a dense output for each number of the state: of the powers 0 to 11 of s, which is
+# Coefficients of a dense output for each number of the state: of the powers 0 to 13 of s, which is
 # -1 at the start and 1 at the end of the step.
-DENSE_SIZE = 12
+DENSE_SIZE = 14
 
 # What is kept of a spring [Lanes].
 SPRING_SIZE = 20

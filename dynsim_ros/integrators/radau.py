@@ -415,5 +415,5 @@ def dense_radau(model, table, size, y, memory, dense):
             value = y[i] if d == 0 else 0.0
             for stage in range(STAGES):
                 value += table[STAGES * d + stage] * (memory[here + STAGES * i + stage] - y[i])
-            dense[DENSE_SIZE * i + d] = value
+            dense[size * d + i] = value
     return 0

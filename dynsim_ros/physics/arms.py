@@ -141,12 +141,3 @@ def step_arm(arm, h, state, behind):
         rate = cross(at(state, _OMEGA), at(state, ARM))
         for i in range(3):
             behind[ARM + i] = fused(h + h, rate[i], behind[ARM + i])
-
-
-@formula
-def swap_arms(arm, a, b):
-    """Exchange the arms of two states."""
-    if arm is not None:
-        kept = at(a, ARM)
-        put(a, ARM, at(b, ARM))
-        put(b, ARM, kept)

@@ -75,7 +75,7 @@ def differences(layout, states, motions):
 
 @functools.cache
 def by_scipy(name):
-    return NewtonEuler(load(name)[0]).solve(np.arange(1, 251) / 25)
+    return NewtonEuler(load(name)[0]).solve(np.arange(1, 2501) / 250)
 
 
 @pytest.mark.parametrize('name, method', [('S1', 'extrapolation'), ('S2', 'extrapolation'),
@@ -83,7 +83,7 @@ def by_scipy(name):
 @pytest.mark.parametrize('tolerance', ALL[:7:3])
 def test_every_sample(name, method, tolerance):
     """Samples come from the dense output: hardly a step ends at one."""
-    states, _ = run(name, method, tolerance, 25.0)
+    states, _ = run(name, method, tolerance, 250.0)
     assert differences(Layout(load(name)[0]), states[1:], by_scipy(name)) < allowed(tolerance)
 
 
