@@ -24,8 +24,8 @@ PARAMETERS = -p record.enable:=true \
 	$(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(DURATION),-p 'duration:=$(DURATION)')
 
 .DELETE_ON_ERROR:
-.PHONY: help run view live test test-browser bench bench-quick bench-stability bench-skipping \
-	bench-instructions bench-node bench-bag bench-view fuzz-bag rerun-grid soak lint clean stale
+.PHONY: help run view live test test-browser test-readers bench bench-quick bench-stability \
+	bench-skipping bench-instructions bench-node bench-bag bench-view fuzz-bag rerun-grid soak lint clean stale
 
 help:
 	@echo 'make run     simulate live on ROS 2 and record, until Ctrl-C; bags go to runs/'
@@ -37,6 +37,7 @@ help:
 	@echo "               ARGS='--node /lab/dynsim'   more options; \`tools/in_venv view --help\` has all"
 	@echo "make test    run the test suite            ARGS='-k bag -x' hands options to pytest"
 	@echo 'make test-browser   only the tests that open the viewer in a Chromium, which has to be there'
+	@echo 'make test-readers   only the tests that open bags with Rerun and with the readers of Foxglove (needs npm)'
 	@echo 'make bench   measure run time against error (half an hour); tables and plot go to benchmarks/'
 	@echo '               ARGS="--scenes S2 --peers heyoka --output /tmp"'
 	@echo 'make bench-quick   the main scenes against the fastest engines, in less than three minutes'
@@ -70,6 +71,9 @@ test: $(VENV)/ready_for_tests
 test-browser: $(VENV)/ready_for_tests
 	@tools/in_venv python test/chromium.py
 	@exec tools/in_venv python -m pytest test/browser $(ARGS)
+
+test-readers: $(VENV)/ready_for_tests $(VENV)/readers/ready
+	@exec tools/in_venv python -m pytest test/readers $(ARGS)
 
 bench: $(VENV)/ready_for_benchmarks
 	@tools/in_venv python benchmarks/work_precision.py $(ARGS)
@@ -125,3 +129,8 @@ $(VENV)/ready_for_tests: $(SETTINGS) $(STALE)
 $(VENV)/ready_for_benchmarks: $(SETTINGS) $(STALE)
 	@tools/set_up $(VENV) bench
 	@touch $(VENV)/ready $@
+
+$(VENV)/readers/ready: tools/set_up_readers test/readers/package-lock.json test/readers/requirements.txt \
+		$(STALE) | $(VENV)/ready_for_tests
+	@tools/set_up_readers $(VENV)/readers
+	@touch $@

@@ -14,6 +14,7 @@ import tempfile
 from chromium import chromium, MISSING
 from dds_domain import claim_domain
 import interfaces
+import viewers
 
 ROOT = Path(__file__).resolve().parent.parent
 _DOMAIN, _DOMAIN_MARK = claim_domain()
@@ -33,6 +34,8 @@ def pytest_report_header():
     lines = [f'DDS domain {_DOMAIN}, discovery on this machine only']
     if chromium() is None:
         lines.append(f'the tests in test/browser are left out: {MISSING}')
+    if not viewers.READY.exists():
+        lines.append(f'the tests in test/readers are left out: {viewers.MISSING}')
     if interfaces.left_out():
         lines.append(f'{", ".join(interfaces.left_out())} left out: {interfaces.MISSING}')
     return lines

@@ -92,7 +92,7 @@ def test_sourced_ros_that_python_cannot_import_is_told(machine):
 def test_help_is_the_default_and_sets_nothing_up(machine):
     done = machine()
     assert done.returncode == 0
-    for target in ('run', 'view', 'live', 'test', 'test-browser', 'lint', 'clean'):
+    for target in ('run', 'view', 'live', 'test', 'test-browser', 'test-readers', 'lint', 'clean'):
         assert f'make {target} ' in done.stdout
 
 
@@ -122,7 +122,7 @@ def test_in_venv_without_one(tmp_path):
 
 
 def test_scripts_are_executable():
-    for name in ('tools/set_up', 'tools/in_venv', '.ci/run'):
+    for name in ('tools/set_up', 'tools/set_up_readers', 'tools/in_venv', '.ci/run'):
         assert os.access(ROOT / name, os.X_OK), name
 
 

@@ -4,6 +4,7 @@
 
 import ast
 from dataclasses import fields, MISSING
+import json
 import re
 import sys
 
@@ -181,3 +182,11 @@ def test_example_scene_has_every_field():
         assert members[section] - {'shape'} == every, section
     assert set(example['air']) == {field.name for field in fields(Air)}
     assert set(example) == {field.name for field in fields(Scene)}
+
+
+def test_versions_of_other_readers():
+    folder = ROOT / 'test' / 'readers'
+    versions = json.loads((folder / 'package.json').read_text('utf-8'))['dependencies']
+    versions |= [(folder / 'requirements.txt').read_text('utf-8').strip().split('==')]
+    told = dict(re.findall(r'`([^`]+)` (\d+\.\d+\.\d+)', PAGES['docs/recording.md']))
+    assert versions.items() <= told.items()

@@ -9,6 +9,7 @@ from dynsim_ros.scene import load_scene
 from geometry_msgs.msg import PointStamped, WrenchStamped
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from other_readers import fields
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from ros_client import stamps, type_named
@@ -103,20 +104,6 @@ def test_rosbags_reads_what_was_heard(run, topic):
         kinds = {c.topic: c.msgtype for c in reader.connections}
     assert found == run.heard[topic][-len(found):] and found
     assert kinds[topic] == run.types[topic]
-
-
-def fields(message):
-    """Return a message of any library as nested plain values."""
-    slots = getattr(message, 'get_fields_and_field_types', None)
-    names = slots() if slots else getattr(message, '__slots__', None)
-    if names is not None and not isinstance(message, (bytes, str)):
-        return {name.lstrip('_'): fields(getattr(message, name)) for name in names
-                if 'check_fields' not in name}
-    if isinstance(message, bytes):
-        return list(message)
-    if hasattr(message, '__len__') and not isinstance(message, str):
-        return [fields(item) for item in message]
-    return message
 
 
 @pytest.mark.parametrize('topic', map(full, TOPICS))
