@@ -23,6 +23,9 @@ NUMBER_ROWS = 24
 # -1 at the start and 1 at the end of the step.
 DENSE_SIZE = 14
 
+# Numbers in a line of the processor's cache.
+_LINE = 8
+
 # What is kept of a spring [Lanes].
 SPRING_SIZE = 20
 
@@ -34,9 +37,20 @@ def new_memory(size, springs):
     """Return memory for any method; size: length of the state; springs: how many there are."""
     # The kernels know of no difference between one spring and none: see Model.connections.
     springs = max(springs, 1)
-    return np.zeros(stage_place(size, springs) + STAGES * (STAGE_ROWS * size + 1
-                                                           + springs * STAGE_SPRING_SIZE)
-                    + STAGES * springs * (STAGES * springs + 1))
+    stages = STAGES * (STAGE_ROWS * size + 1 + springs * STAGE_SPRING_SIZE)
+    return _zeros_in_line(stage_place(size, springs) + stages
+                          + STAGES * springs * (STAGES * springs + 1))
+
+
+def _zeros_in_line(count):
+    """
+    Return (count,) zeros that begin where a line of the processor's cache does.
+
+    Lanes in them then never lie across two lines, which would cost a fifth of the time of a step.
+    """
+    whole = np.zeros(count + _LINE)
+    first = -(whole.ctypes.data // whole.itemsize) % _LINE
+    return whole[first:first + count]
 
 
 def number_row(several, memory, row, size):
