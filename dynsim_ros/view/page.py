@@ -16,13 +16,14 @@ from .stage import Stage
 _PLOTS_WIDTH, _CONTROLS_WIDTH, _LOOKS_HEIGHT = 380, 310, 380
 # How often what is shown is brought up to date [Hz].
 RATE = 30.0
-# Small print stands out enough from what is behind it to be read, also with `?darkMode`; icons are
-# large enough to be hit.
+# Small print stands out enough from what is behind it to be read, also with `?darkMode`; icons and
+# fields for numbers are large enough to be hit.
 _STYLE = """<style>
 :root{--mantine-color-dimmed:#4a5056!important}
 :root[data-mantine-color-scheme=dark]{--mantine-color-dimmed:#b8bdc3!important}
 .mantine-Slider-markLabel,.multi-slider-mark-label{color:var(--mantine-color-dimmed)!important}
 .mantine-ActionIcon-root{min-width:26px;min-height:26px}
+[data-with-right-section]>.mantine-NumberInput-input{min-height:24px!important}
 </style>"""
 
 
