@@ -132,7 +132,7 @@ class AdaptiveSteps(Walk):
     @property
     def attempts(self):
         """Return how many steps were attempted."""
-        return int(self.counts[STEPS] + self.counts[REJECTED])
+        return self.counts.item(STEPS) + self.counts.item(REJECTED)
 
     def run(self, limit, grid, budget=BUDGET):
         """Take steps until the grid is filled or the limit reached; return what ended them."""

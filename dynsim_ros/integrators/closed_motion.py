@@ -38,7 +38,7 @@ class ClosedMotion:
     def fill(self, first_ns, period_ns, states, limit_ns=None):
         """Write the states at instants that are evenly spaced to states: (n, size)."""
         # All else in a scene is of the same type whenever its motion begins.
-        kind = tuple(part is None for part in self._scene)
+        kind = tuple([part is None for part in self._scene])
         if kind == AT_REST:
             states[:] = self._scene.start
             return

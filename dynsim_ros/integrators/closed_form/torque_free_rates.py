@@ -13,7 +13,7 @@ from decimal import Decimal, localcontext
 
 from .phase import norm_in_two
 from .rotate_exactly import rotate_back_exactly
-from .torque_free_setup import torque_free_setup
+from .torque_free_setup import setup_in_body
 from ...physics.vector import transform
 
 _DIGITS = 50
@@ -74,14 +74,14 @@ def torque_free_in_full(moments, axes, q, omega):
 
     Arguments: as for torque_free_setup.
     """
-    motion = torque_free_setup(moments, axes, q, omega)
+    exact = rotate_back_exactly(q, omega)
+    motion = setup_in_body(moments, axes, q, *exact)
     if motion.rate == 0.0:
         rate, left = norm_in_two(omega)
         return motion._replace(precession=0.5 * rate, precession_left=0.5 * left)
     with localcontext() as context:
         context.prec = _DIGITS
-        body = [Decimal(first) + Decimal(left)
-                for first, left in zip(*rotate_back_exactly(q, omega))]
+        body = [Decimal(first) + Decimal(left) for first, left in zip(*exact)]
         w = transform([[Decimal(part) for part in axis] for axis in axes], body)
         order = 1 if motion.circulation > 0.0 else -1
         found = half_period_and_precession([Decimal(i) for i in moments][::order], w[::order])

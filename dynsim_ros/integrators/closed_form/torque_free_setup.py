@@ -144,14 +144,12 @@ def circling_rotation(moments, w, circulation, side, body, q):
 
 
 @formula
-def torque_free_setup(moments, axes, q, omega):
+def setup_in_body(moments, axes, q, in_body, left):
     """
-    Return the TorqueFree of a rotation from what is known at time 0.
+    Return what torque_free_setup does.
 
-    moments: three, ascending, > 0 [kg m^2], and axes: three rows, the principal axes in body axes,
-    both from principal_axes; q: orientation (w, x, y, z); omega: (3,) in world [rad/s].
+    in_body, left: two (3,) whose sum is omega in body axes [rad/s].
     """
-    in_body, left = rotate_back_exactly(q, omega)
     w = transform(axes, in_body)
     if is_steady(moments, w):
         return steady_rotation(q, in_body)
@@ -160,3 +158,14 @@ def torque_free_setup(moments, axes, q, omega):
     circulation = -1.0 if side < 0.0 else 1.0
     return circling_rotation(moments, w, circulation, abs(side),
                              matrix_quaternion(transposed(axes)), q)
+
+
+@formula
+def torque_free_setup(moments, axes, q, omega):
+    """
+    Return the TorqueFree of a rotation from what is known at time 0.
+
+    moments: three, ascending, > 0 [kg m^2], and axes: three rows, the principal axes in body axes,
+    both from principal_axes; q: orientation (w, x, y, z); omega: (3,) in world [rad/s].
+    """
+    return setup_in_body(moments, axes, q, *rotate_back_exactly(q, omega))

@@ -16,6 +16,7 @@ import math
 import numpy as np
 
 from .hold import holds_of
+from .imbalance import is_unbalanced
 from ..closed_form import cancels, spring_size
 from ...physics.motion import apply_forces
 from ...physics.rotation import rotate
@@ -41,13 +42,15 @@ class _Body:
 def moves(model, state):
     """Return whether anything moves in a state."""
     bodies = len(model.mass)
-    return (state[3 * bodies:6 * bodies].any()
-            or state[6 * bodies + 4 * model.rigid:6 * bodies + 7 * model.rigid].any())
+    return (any(state[3 * bodies:6 * bodies].tolist())
+            or any(state[6 * bodies + 4 * model.rigid:6 * bodies + 7 * model.rigid].tolist()))
 
 
 def is_equilibrium(model, drive, start, holds):
     """Return whether the state `start`, in which nothing moves, lasts; holds: from holds_of."""
     if any(hold.anchor is not None and any(hold.anchor.velocity) for hold in holds):
+        return False
+    if is_unbalanced(model, drive, start, holds):
         return False
     left = np.zeros_like(start)
     apply_forces(model, drive._replace(works=None), 0.0, start, left)

@@ -132,14 +132,14 @@ class ClosedScene(NamedTuple):
     start: np.ndarray
     bodies: int
     rigid: int
-    flights: Flights | None
-    centred: Centred | None
-    line: Line | None
-    spins: Spins | None
-    slowed: Slowed | None
-    whirls: Whirls | None
-    tops: Tops | None
-    balance: Balance | None
+    flights: Flights | None = None
+    centred: Centred | None = None
+    line: Line | None = None
+    spins: Spins | None = None
+    slowed: Slowed | None = None
+    whirls: Whirls | None = None
+    tops: Tops | None = None
+    balance: Balance | None = None
 
 
 # Which parts are None where nothing ever moves.

@@ -3,14 +3,9 @@
 """Seen at a glance: most motions of a single body on springs have no closed form."""
 
 from .hold import holds_of
-from ...physics.rotation import rotate
-from ...physics.vector import add, cross, subtract
 
-# Of velocity and distance: what moves across its spring by more is not rounding.
-_FAR = 1e-6
-
-# As formulas of numbers, without the way by which kernels find them.
-_rotate, _cross, _add, _subtract = (f.py_func for f in (rotate, cross, add, subtract))
+# Of velocity and distance, squared: what moves across its spring by more is not rounding.
+_FAR = 1e-12
 
 
 class Openness:
@@ -21,7 +16,6 @@ class Openness:
     """
 
     def __init__(self, model, drive):
-        self._anchors, self._offset = drive.anchors, None
         self._is_hung = model.springs is not None and model.several is None
         if not self._is_hung:
             return
@@ -31,21 +25,22 @@ class Openness:
         self._is_on_one = len(holds) == 1
         if self._is_on_one:
             group, = model.springs
-            self._anchor = next(int(ends.anchor[0]) for ends in (group.p, group.q)
-                                if ends.anchor is not None)
-            self._offset = holds[0].end.offset if any(holds[0].end.offset) else None
+            # A view: anchors are moved in place.
+            self._anchor = next(drive.anchors[int(ends.anchor[0])]
+                                for ends in (group.p, group.q) if ends.anchor is not None)
+            x, y, z = holds[0].end.offset
+            self._arm_square = x * x + y * y + z * z
 
     def is_plain(self, state):
         """Return whether a state (size,) moves so that there is plainly no closed form."""
         if not self._is_hung:
             return False
-        *position, u, v, w = state[:6].tolist()
+        x, y, z, u, v, w = state[:6].tolist()
         if not self._is_on_one:
             return bool(u or v or w)
-        px, py, pz, *velocity = self._anchors[self._anchor].tolist()
-        velocity = _subtract((u, v, w), velocity)
-        if self._offset is not None:
-            position = _add(position, _rotate(tuple(state[6:10].tolist()), self._offset))
-        direction = _subtract(position, (px, py, pz))
-        across = max(map(abs, _cross(direction, velocity)))
-        return across > _FAR * max(map(abs, direction)) * max(map(abs, velocity))
+        # Where all is along the line of a spring, so is the arm: the centre moves on that line.
+        px, py, pz, pu, pv, pw = self._anchor.tolist()
+        x, y, z, u, v, w = x - px, y - py, z - pz, u - pu, v - pv, w - pw
+        a, b, c = y * w - z * v, z * u - x * w, x * v - y * u
+        return (a * a + b * b + c * c
+                > _FAR * (x * x + y * y + z * z + self._arm_square) * (u * u + v * v + w * w))

@@ -26,7 +26,7 @@ class Recogniser:
         self._model, self._drive = model, drive
         self._axes = all_axes(model)
         self._openness = Openness(model, drive)
-        self._energies = None
+        self._energies, self._acting = None, None
 
     def closed_scene(self, state):
         """Return the ClosedScene of the motion from a state (size,) on, or None."""
@@ -39,40 +39,39 @@ class Recogniser:
         start = state.copy()
         for i in range(model.rigid):
             q = start[6 * len(model.mass) + 4 * i:][:4]
-            q /= math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-        holds = holds_of(model, drive.anchors)
-        if is_still and is_equilibrium(model, drive, start, holds):
-            return self._scene(start)
-        return self._moving(start, holds)
+            w, x, y, z = q.tolist()
+            q /= math.sqrt(w * w + x * x + y * y + z * z)
+        self._look_at_what_acts()
+        if is_still and is_equilibrium(model, drive, start, self._holds):
+            return ClosedScene(start, len(model.mass), model.rigid)
+        return self._moving(start)
 
-    def _scene(self, start, **parts):
-        model = self._model
-        none = dict.fromkeys(ClosedScene._fields)
-        return ClosedScene(**none | {'start': start, 'bodies': len(model.mass),
-                                     'rigid': model.rigid} | parts)
+    def _look_at_what_acts(self):
+        """Find what depends on nothing but what acts, where that is no longer what it was."""
+        model, drive = self._model, self._drive
+        acting = drive.anchors.tobytes(), drive.pushes is not None and drive.pushes.tobytes()
+        if acting == self._acting:
+            return
+        self._acting, self._holds = acting, holds_of(model, drive.anchors)
+        self._body = self._always = None
+        if not self._holds:
+            self._always = {'flights': flights(model, drive)}, None
+        elif model.several is None and all(hold.anchor is not None for hold in self._holds):
+            self._body = SingleBody(model, drive, self._holds)
+            self._always = self._body.centred()
 
-    def _moving(self, start, holds):
-        centre = self._centre(start, holds)
+    def _moving(self, start):
+        model, centre = self._model, self._always
+        if centre is None and self._body is not None:
+            centre = self._body.line(start)
         if centre is None:
             return None
-        turning = rotations(self._model, self._drive, start, self._axes)
+        turning = rotations(model, self._drive, start, self._axes)
         if turning is None:
             return None
-        holding = centre.pop('holding', None)
-        return self._scene(start, **centre, **turning, balance=self._balance(start, holding))
-
-    def _centre(self, start, holds):
-        """Return what moves the centres of mass, as fields of ClosedScene, or None."""
-        model = self._model
-        if not holds:
-            return {'flights': flights(model, self._drive)}
-        if model.several is not None or any(hold.anchor is None for hold in holds):
-            return None
-        body = SingleBody(model, self._drive, start, holds)
-        for kind, found in (('centred', body.centred()), ('line', body.line())):
-            if found is not None:
-                return {kind: found[0], 'holding': found[1]}
-        return None
+        moved, holding = centre
+        return ClosedScene(start, len(model.mass), model.rigid, **moved, **turning,
+                           balance=self._balance(start, holding))
 
     def _balance(self, start, holding):
         model, drive = self._model, self._drive

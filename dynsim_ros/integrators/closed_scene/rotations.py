@@ -14,9 +14,11 @@ def rotations(model, drive, start, axes):
     """
     Return {'spins', 'slowed', 'whirls', 'tops'}, as in ClosedScene, or None.
 
-    None: a rotation has no closed form. start: the state, its quaternions normalised; axes: from
-    all_axes.
+    None: a rotation has no closed form. Nothing rotates: {}. start: the state, its quaternions
+    normalised; axes: from all_axes.
     """
+    if model.rigid == 0:
+        return {}
     found = rotations_of(model, drive, start)
     spinning, whirled, free = {}, {}, {}
     if model.round_body is not None:

@@ -48,26 +48,22 @@ def _is_nearly_along(direction, vector, slack):
 
 
 class SingleBody:
-    """The only body of a model, and the springs that hold it to anchors."""
+    """The only body of a model, what acts on it, and the springs that hold it to anchors."""
 
-    def __init__(self, model, drive, start, holds):
+    def __init__(self, model, drive, holds):
         self.model, self.holds = model, holds
         self.mass = float(model.mass[0])
-        self.position, self.velocity = (tuple(start[i:i + 3].tolist()) for i in (0, 3))
         self.force = tuple(forces(model, drive)[0].tolist())
         self.acceleration = tuple(component / self.mass for component in self.force)
         self.drag, self.wind = drag_and_wind(model)
         self.rotating = []
-        if model.rigid:
-            self.orientation = tuple(start[6:10].tolist())
-            self.rotating = [tuple(start[10:13].tolist())]
-            if drive.pushes is not None:
-                self.rotating.append(tuple(drive.pushes[10:13].tolist()))
-            if model.air is not None and model.air.angular_velocity is not None:
-                self.rotating.append(tuple(model.air.angular_velocity))
+        if model.rigid and drive.pushes is not None:
+            self.rotating.append(tuple(drive.pushes[10:13].tolist()))
+        if model.air is not None and model.air.angular_velocity is not None:
+            self.rotating.append(tuple(model.air.angular_velocity))
 
     def centred(self):
-        """Return (Centred, Holding) on springs of natural length zero, or None."""
+        """Return ({'centred'}, Holding) on springs of natural length zero, or None."""
         if any(hold.natural_length or hold.damping or any(hold.end.offset)
                for hold in self.holds):
             return None
@@ -80,41 +76,46 @@ class SingleBody:
         for k, c, v in zip(stiffnesses, positions, velocities):
             linear += k * dot(v, subtract(c, centre))
             quadratic += 0.5 * k * dot(v, subtract(v, velocity))
-        return (Centred(self.mass, stiffness, centre, velocity, self.acceleration, self.drag,
-                        self.wind), self._holding(velocity, linear, quadratic, 0.0))
+        return ({'centred': Centred(self.mass, stiffness, centre, velocity, self.acceleration,
+                                    self.drag, self.wind)},
+                self._holding(velocity, linear, quadratic, 0.0))
 
-    def line(self):
-        """Return (Line, Holding) on the line of the only spring, or None."""
+    def line(self, start):
+        """Return ({'line'}, Holding) on the line of the only spring, or None."""
         if len(self.holds) > 1:
             return None
         hold, = self.holds
         anchor = hold.anchor
-        arm = rotate(self.orientation, hold.end.offset) if any(hold.end.offset) else _ZERO
-        tip = add(self.position, arm)
-        along = [self.acceleration, subtract(self.velocity, anchor.velocity), arm]
+        position, velocity = (tuple(start[i:i + 3].tolist()) for i in (0, 3))
+        arm = _ZERO
+        if any(hold.end.offset):
+            arm = rotate(tuple(start[6:10].tolist()), hold.end.offset)
+        tip = add(position, arm)
+        along = [self.acceleration, subtract(velocity, anchor.velocity), arm]
         if self.drag:
             along.append(subtract(self.wind, anchor.velocity))
         if any(arm):
-            if self.model.general_body is not None and any(map(any, self.rotating)):
+            rotating = [tuple(start[10:13].tolist()), *self.rotating]
+            if self.model.general_body is not None and any(map(any, rotating)):
                 return None
-            along += self.rotating
-        slack = _NEARLY * max(map(abs, (*self.position, *arm, *anchor.position)))
+            along += rotating
+        slack = _NEARLY * max(map(abs, (*position, *arm, *anchor.position)))
         if not all(_is_nearly_along(subtract(tip, anchor.position), vector, slack)
                    for vector in along):
             return None
         # Without rounding, also that of the difference: across the line all may be unstable.
         direction = tuple(Fraction(x) + Fraction(a) - Fraction(p)
-                          for x, a, p in zip(self.position, arm, anchor.position))
+                          for x, a, p in zip(position, arm, anchor.position))
         if tip == anchor.position or not all(
                 is_along(direction, tuple(map(Fraction, vector))) for vector in along):
             return None
-        spring = spring_line(tip, self.velocity, anchor.position, anchor.velocity, self.mass,
+        spring = spring_line(tip, velocity, anchor.position, anchor.velocity, self.mass,
                              hold.stiffness, hold.natural_length, hold.damping,
                              self.acceleration, self.drag, self.wind)
         least = _LEAST_LENGTH * max(spring.natural_length, spring.length)
         if not least_length(spring, math.inf) > least:
             return None
-        return Line(spring, arm), self._holding(anchor.velocity, 0.0, 0.0, hold.damping)
+        return {'line': Line(spring, arm)}, self._holding(anchor.velocity, 0.0, 0.0, hold.damping)
 
     def _holding(self, velocity, linear, quadratic, damping):
         return Holding(self.mass, self.force, velocity, linear, quadratic, damping,
