@@ -54,7 +54,7 @@ _SHORTEST = 1e-15
 # Steps that become shorter so many times in a row do so because of rounding.
 _PERSISTENCE = 20.0
 # So many steps in a row convince the watch that they are long, or short.
-_PATIENCE, _SHORT_PATIENCE = 10.0, 3.0
+PATIENCE, _SHORT_PATIENCE = 10, 3
 # Units of the last place that rounding leaves of an error estimate.
 _UNITS = 20.0 * 2.0 ** -52
 # How long a run has to be calm before it is at rest [s].
@@ -299,7 +299,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
             status = BUDGET_SPENT
             break
         clock[WATCHED] = watched(watch, clock[NEXT], clock[WATCHED])
-        if clock[WATCHED] >= (_PATIENCE if watch > 0.0 else _SHORT_PATIENCE):
+        if clock[WATCHED] >= (PATIENCE if watch > 0.0 else _SHORT_PATIENCE):
             clock[WATCHED] = 0.0
             status = SWITCH
             break

@@ -4,15 +4,15 @@
 The choice between the explicit and the stiff method, from what the run shows.
 
 The explicit method goes first. Once its steps have stayed for a while where only stability can
-hold them back, the stiff one tries a step so much longer that it is worth its cost; if it succeeds
-it goes on, and hands back once its steps are no longer worth theirs. After a trial that
-did not succeed the next one waits twice as long. All that decides is in the steps themselves, so
-that a repeated run decides alike.
+hold them back, and velocities hardly change in one, the stiff one tries a step so much longer that
+it is worth its cost; if it succeeds it goes on, and hands back once its steps are no longer worth
+theirs. After a trial that did not succeed the next one waits longer. All that decides is in the
+steps themselves, so that a repeated run decides alike.
 """
 
 import math
 
-from .adaptive import AT_REST, BASE, END, NEXT, REACHED, STEPS, SWITCH
+from .adaptive import AT_REST, BASE, END, NEXT, PATIENCE, REACHED, STEPS, SWITCH, WATCHED
 from .adaptive_steps import AdaptiveSteps, FAR, Walk
 from .closed_scene import comes_to_rest
 from .stiffness import held_back_step
@@ -24,6 +24,9 @@ _SHORTEST_WAIT, _LONGEST_WAIT = 32, 4096
 # A run is calm when no velocity is above this part of the tolerance [1/s]; it is then at rest
 # where the air stops what still moves within the inverse of that.
 _CALM = 1e-2
+# Where velocities change by more than this part of them in an explicit step, a stiff step, several
+# times as long, would fail; noise of the step control is not above so many tolerances.
+_SMOOTH, _NOISE = 0.3, 100.0
 # Stiff steps in a row after which a trial was a success.
 _SUCCESS = 20
 
@@ -104,8 +107,8 @@ class AutoSteps(Walk):
                 return status
             elif at_work is self.stiff:
                 self._hand_back()
-            elif self.explicit.counts[STEPS] >= self._next_trial:
-                self._try_stiff(limit, grid)
+            else:
+                self._switch(limit, grid)
 
     def _is_asleep(self):
         # A step that went past a command has been taken back: that was before.
@@ -119,6 +122,31 @@ class AutoSteps(Walk):
             self._asleep_at = clock[BASE] + clock[END]
         else:
             self.explicit.calm = 0.0
+
+    def _switch(self, limit, grid):
+        """Go over to the stiff method if it is time to try that and it succeeds."""
+        steps = self.explicit.counts.item(STEPS)
+        if steps >= self._next_trial:
+            if self._is_smooth():
+                self._try_stiff(limit, grid)
+            else:
+                self._postpone()
+        # Whenever its patience is at an end the watch tells, and goes on from the step that it saw
+        # last: it has nothing to tell before the next trial.
+        wait, period = int(self._next_trial) - steps, PATIENCE - 1
+        self.explicit.clock[WATCHED] = period * (1 - max(1, -(-wait // period)))
+
+    def _is_smooth(self):
+        """Return whether no velocity has changed much in the last explicit step."""
+        bodies, rigid = len(self._model.mass), self._model.rigid
+        before, after = self.explicit.states[:2].tolist()
+        omegas = 6 * bodies + 4 * rigid
+        for part in slice(3 * bodies, 6 * bodies), slice(omegas, omegas + 3 * rigid):
+            first, last = before[part], after[part]
+            size = max(map(abs, (*first, *last, _NOISE * self.explicit.tolerance)))
+            if any(abs(b - a) > _SMOOTH * size for a, b in zip(first, last)):
+                return False
+        return True
 
     def _hand_back(self):
         if self.stiff.counts[STEPS] - self._entered >= _SUCCESS:
