@@ -25,6 +25,8 @@ os.environ.update(
 for _name in ('ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS', 'ROS_DISCOVERY_SERVER', 'ROS_NAMESPACE',
               'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE'):
     os.environ.pop(_name, None)
+# without kept byte code each process that tests start would compile the whole package first
+os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
 # processes that tests start run this tree, installed or not
 os.environ['PYTHONPATH'] = os.pathsep.join(
     [str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])
