@@ -4,6 +4,8 @@
 
 import numba
 
+from ..physics.lighter_compiling import lighter_compiling
+
 
 def entry(kernel, *arguments):
     """
@@ -16,5 +18,6 @@ def entry(kernel, *arguments):
     signature = tuple(numba.typeof(argument) for argument in arguments)
     # Asked first: compile() waits until no other thread compiles anything.
     if signature not in kernel.overloads:
-        kernel.compile(signature)
+        with lighter_compiling():
+            kernel.compile(signature)
     return kernel.overloads[signature].entry_point

@@ -138,7 +138,8 @@ def kernel(function):
     same bits in every run. The plain function stays as the attribute py_func; with numba's
     environment variable NUMBA_DISABLE_JIT=1 it is what is returned.
     """
-    return _compiled(function)
+    # No wrapper for calls from C, which nobody makes: those that the Model makes long.
+    return _compiled(function, no_cfunc_wrapper=True)
 
 
 class _Formula(CPUDispatcher):
