@@ -11,6 +11,7 @@ import pytest
 from tree import output_of, ROOT
 
 
+@pytest.mark.timeout(300)  # compiles first
 def test_it_finds_how_far_the_sphere_swings():
     text = output_of([sys.executable, ROOT / 'examples' / 'sweep.py', '--processes', 1])
     heading, dampings, *rows, best = text.splitlines()

@@ -109,6 +109,7 @@ def test_frame_names_of_every_length(length, monkeypatch):
                                           simulator.snapshot().position('sphere'))
 
 
+@pytest.mark.timeout(300)  # compiles first
 def test_many_ticks_at_once_are_the_same_bytes():
     simulator = Simulator(load_scene('two_anchors'), anchor_interpolation='linear')
     simulator.advance_tick()

@@ -35,6 +35,7 @@ def both(scene, ticks, **settings):
     return stand(single), stand(at_once)
 
 
+@pytest.mark.timeout(300)  # compiles first
 @pytest.mark.parametrize('scene', scene_names())
 def test_every_scene(scene):
     single, at_once = both(scene, 700)
