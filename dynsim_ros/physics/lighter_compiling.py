@@ -9,6 +9,8 @@ import gc
 from numba.core import ir
 from numba.core.compiler_lock import global_compiler_lock
 
+# What a scope consists of, as far as it is known here: one that has other parts is left alone.
+_PARTS = {'parent', 'localvars', 'loc', 'redefined', 'var_redefinitions'}
 # New objects until Python looks for cycles among them: compiling makes millions that are needed.
 _OBJECTS = 20_000
 
@@ -30,18 +32,24 @@ def _copy_of_scope(scope, memo):
     return new
 
 
+def _is_known(scope):
+    return vars(scope).keys() == _PARTS and vars(scope.localvars).keys() == {'_con'}
+
+
 @contextmanager
 def lighter_compiling():
     """Let numba compile with less work meanwhile: the same code comes out."""
     with global_compiler_lock:
-        thresholds, copied = gc.get_threshold(), vars(ir.Scope).get('__deepcopy__')
+        thresholds = gc.get_threshold()
+        replaces = (_is_known(ir.Scope(None, ir.Loc(__file__, 1)))
+                    and '__deepcopy__' not in vars(ir.Scope))
         if 0 < thresholds[0] < _OBJECTS:
             gc.set_threshold(_OBJECTS, *thresholds[1:])
-        if copied is None:
+        if replaces:
             ir.Scope.__deepcopy__ = _copy_of_scope
         try:
             yield
         finally:
             gc.set_threshold(*thresholds)
-            if copied is None:
+            if replaces:
                 del ir.Scope.__deepcopy__
