@@ -1,8 +1,10 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Handles by which anchors are dragged in RViz, where interactive_markers is installed."""
+"""Handles by which anchors are dragged in RViz."""
 
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import InteractiveMarker, InteractiveMarkerControl, Marker
 
@@ -12,52 +14,66 @@ try:
     from interactive_markers import InteractiveMarkerServer
 except ImportError:
     # ROS on PyPI lacks it.
-    InteractiveMarkerServer = None
+    from .marker_server import MarkerServer as InteractiveMarkerServer
 
 _TOPIC = 'handles'
+# How often handles follow their anchors while somebody looks on [s].
+_PERIOD = 0.1
 _HALF = 0.5 ** 0.5
 # What turns the x axis of a control into each axis of the world.
 _TURNS = {'x': Quaternion(x=_HALF, w=_HALF), 'y': Quaternion(z=_HALF, w=_HALF),
           'z': Quaternion(y=_HALF, w=_HALF)}
 
 
-def handles_for(node, scene, drag):
+def handles_for(node, scene, snapshot, drag):
     """
-    Return Handles for a scene, None where there is no anchor or no library for them.
+    Return Handles for a scene, None where there is no anchor.
 
-    drag(topic, anchor, header, point): called when an anchor is dragged.
+    snapshot(): returns a Snapshot of the run; drag(topic, anchor, header, point): called when an
+    anchor is dragged.
     """
-    if InteractiveMarkerServer is None or not scene.anchors:
-        return None
-    return Handles(node, scene, drag)
+    return Handles(node, scene, snapshot, drag) if scene.anchors else None
 
 
 class Handles:
-    """A handle for each anchor of a scene; those of one that moves otherwise follow it."""
+    """A handle for each anchor of a scene; while somebody looks on, they follow their anchors."""
 
-    def __init__(self, node, scene, drag):
-        self._drag = drag
+    def __init__(self, node, scene, snapshot, drag):
+        self._node, self._snapshot, self._drag = node, snapshot, drag
         self._server = InteractiveMarkerServer(node, f'~/{_TOPIC}')
+        self._updates = node.resolve_topic_name(f'~/{_TOPIC}/update')
         self._places = {anchor.name: tuple(anchor.position) for anchor in scene.anchors}
         for name, place in self._places.items():
             self._server.insert(_handle(name, place, drawing_scale(scene)),
                                 feedback_callback=self._feel)
         self._server.applyChanges()
+        self._timer = node.create_timer(_PERIOD, self._follow, autostart=False,
+                                        clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def follow(self, snapshot):
-        """Put the handles where the anchors are now."""
-        moved = {name: tuple(snapshot.anchor_position(name).tolist()) for name in self._places}
-        for name in [name for name, place in moved.items() if place != self._places[name]]:
-            self._server.setPose(name, _pose(moved[name]))
-        self._places = moved
-        self._server.applyChanges()
+    def look(self):
+        """Let the handles follow, or not, as there is somebody who sees them."""
+        is_seen = self._node.count_subscribers(self._updates) > 0
+        if is_seen == self._timer.is_canceled():
+            self._timer.reset() if is_seen else self._timer.cancel()
 
     def end(self):
         """Take the handles away; while ROS is still there."""
+        self._timer.cancel()
         self._server.shutdown()
+
+    def _follow(self):
+        snapshot = self._snapshot()
+        for name, before in self._places.items():
+            place = tuple(snapshot.anchor_position(name).tolist())
+            if place != before:
+                self._server.setPose(name, _pose(place))
+                self._places[name] = place
+        self._server.applyChanges()
 
     def _feel(self, feedback):
         if feedback.event_type == feedback.POSE_UPDATE:
+            # It goes back to its anchor, should that not be let go where it was dragged to.
+            self._places[feedback.marker_name] = None
             self._drag(f'{_TOPIC}/feedback', feedback.marker_name, feedback.header,
                        feedback.pose.position)
 

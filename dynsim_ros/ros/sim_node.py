@@ -106,7 +106,7 @@ class SimNode(Node):
                              lambda: self._followed is None or self._followed.is_good(),
                              self.parameters.own, lambda line: self.get_logger().warning(line))
         self.commands = Commands(self, self.run, self.ticker.mailbox)
-        self.handles = handles_for(self, simulator.scene, self.commands.drag)
+        self.handles = handles_for(self, simulator.scene, self._snapshot, self.commands.drag)
 
     def get_logger(self):
         """Return the logger of this node."""
@@ -260,5 +260,8 @@ class SimNode(Node):
         self.audience.look()
         self.ticker.mailbox.ask(self.diagnostics.publish)
         if self.handles is not None:
-            self.handles.follow(self.ticker.mailbox.ask(self.run.simulator.snapshot))
+            self.handles.look()
         self.compiling.prepare_ahead(self._copy)
+
+    def _snapshot(self):
+        return self.ticker.mailbox.ask(self.run.simulator.snapshot)

@@ -1,118 +1,116 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Handles for RViz, by which anchors are dragged.
-
-PyPI has no interactive_markers. In its place there is a package of that name with as much of its
-server as is used, on the topics and the service that RViz knows.
-"""
-
-import os
+"""Handles by which anchors are dragged, looked at and taken hold of as RViz does."""
 
 import pytest
+from rviz import RViz
 from scene_topics import DIAGNOSTICS, POSE, positions
-from visualization_msgs.msg import InteractiveMarkerControl, InteractiveMarkerFeedback
-from visualization_msgs.srv import GetInteractiveMarkers
-
-UPDATE = 'visualization_msgs/msg/InteractiveMarkerUpdate'
-SERVER = """
-from visualization_msgs.msg import (InteractiveMarkerFeedback, InteractiveMarkerPose,
-                                    InteractiveMarkerUpdate)
-from visualization_msgs.srv import GetInteractiveMarkers
-
-
-class InteractiveMarkerServer:
-    def __init__(self, node, namespace):
-        self.markers, self.callbacks, self.moved = {}, {}, []
-        self.publisher = node.create_publisher(
-            InteractiveMarkerUpdate, f'{namespace}/update', 100)
-        node.create_service(
-            GetInteractiveMarkers, f'{namespace}/get_interactive_markers', self.tell)
-        node.create_subscription(
-            InteractiveMarkerFeedback, f'{namespace}/feedback', self.take, 1)
-
-    def insert(self, marker, *, feedback_callback=None):
-        self.markers[marker.name], self.callbacks[marker.name] = marker, feedback_callback
-
-    def setPose(self, name, pose):
-        self.markers[name].pose = pose
-        self.moved.append(InteractiveMarkerPose(
-            name=name, pose=pose, header=self.markers[name].header))
-
-    def applyChanges(self):
-        if self.moved:
-            self.publisher.publish(InteractiveMarkerUpdate(poses=self.moved))
-        self.moved = []
-
-    def shutdown(self):
-        print('handles taken away')
-
-    def tell(self, request, response):
-        response.markers = list(self.markers.values())
-        return response
-
-    def take(self, feedback):
-        if feedback.marker_name in self.markers:
-            self.callbacks[feedback.marker_name](feedback)
-"""
+from visualization_msgs.msg import InteractiveMarkerControl
 
 
 @pytest.fixture(scope='module')
-def node(start, tmp_path_factory):
-    folder = tmp_path_factory.mktemp('stand_in')
-    (folder / 'interactive_markers').mkdir()
-    (folder / 'interactive_markers' / '__init__.py').write_text(SERVER)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('PYTHONPATH', f'{folder}{os.pathsep}{os.environ["PYTHONPATH"]}')
-        return start()
+def node(start):
+    return start()
 
 
 @pytest.fixture(scope='module')
 def client(node, connect):
     client = connect(node)
-    client.listen({'hand/pose': POSE, 'handles/update': UPDATE, '/diagnostics': DIAGNOSTICS})
+    client.listen({'hand/pose': POSE, '/diagnostics': DIAGNOSTICS})
     return client
 
 
-def feedback(x, frame='world'):
-    message = InteractiveMarkerFeedback(
-        marker_name='hand', client_id='rviz', event_type=InteractiveMarkerFeedback.POSE_UPDATE)
-    message.header.frame_id = frame
-    message.pose.position.x, message.pose.position.z = x, 2.2
-    return message
+@pytest.fixture(scope='module')
+def rviz(client):
+    return RViz(client)
 
 
 def hand(client):
     return list(positions([client.last('hand/pose')])[0])
 
 
-def test_rviz_is_given_a_handle_at_the_anchor(client):
-    (marker,) = client.call('handles/get_interactive_markers', GetInteractiveMarkers).markers
-    assert (marker.name, marker.header.frame_id, marker.pose.position.z) == ('hand', 'world', 2.0)
+def test_there_is_a_handle_at_the_anchor(rviz):
+    (marker,) = rviz.markers.values()
+    assert (marker.name, marker.header.frame_id) == ('hand', 'world')
+    assert rviz.place('hand') == [0.0, 0.0, 2.0]
     modes = [control.interaction_mode for control in marker.controls]
     assert modes == [InteractiveMarkerControl.MOVE_3D] + 3 * [InteractiveMarkerControl.MOVE_AXIS]
 
 
-def test_the_anchor_follows_the_handle(client):
-    client.publish('handles/feedback', feedback(0.25))
+def test_the_anchor_follows_the_handle(client, rviz):
+    rviz.drag('hand', (0.25, 0.0, 2.2))
     client.wait(lambda: client.heard['hand/pose'] and hand(client) == [0.25, 0.0, 2.2])
+    client.wait(lambda: rviz.place('hand') == [0.25, 0.0, 2.2])
 
 
-def test_the_handle_follows_the_anchor(client):
-    client.wait(lambda: client.heard['handles/update'])
+def test_the_handle_follows_the_anchor(client, rviz):
     client.reset()
-    client.wait(lambda: client.last('handles/update').poses[0].pose.position.x == 0.0)
-    (moved,) = client.last('handles/update').poses
-    assert (moved.name, moved.pose.position.z) == ('hand', 2.0)
+    client.wait(lambda: rviz.place('hand') == [0.0, 0.0, 2.0])
 
 
-def test_another_frame_is_refused(client, node):
-    client.publish('handles/feedback', feedback(0.5, 'elsewhere'))
-    client.wait(lambda: 'refused' in node.output)
+def test_who_comes_later_is_shown_the_same(client, rviz, connect, node):
+    rviz.drag('hand', (0.0, 0.1, 2.0))
+    client.wait(lambda: rviz.place('hand') == [0.0, 0.1, 2.0])
+    assert RViz(connect(node)).place('hand') == [0.0, 0.1, 2.0]
+
+
+def test_one_at_a_time_has_hold_of_a_handle(client, rviz):
+    rviz.drag('hand', (0.0, 0.2, 2.0))
+    rviz.drag('hand', (0.0, 0.9, 2.0), user='/somebody_else')
+    rviz.drag('hand', (0.0, 0.3, 2.0))
+    seen = set()
+
+    def is_last():
+        seen.update(y for _, y, _ in positions(client.messages('hand/pose')))
+        return 0.3 in seen
+    client.wait(is_last)
+    assert 0.9 not in seen
+    # After a while it is free.
+
+    def is_taken_over():
+        rviz.drag('hand', (0.0, 0.9, 2.0), user='/somebody_else')
+        return hand(client) == [0.0, 0.9, 2.0]
+    client.wait(is_taken_over)
+
+
+def test_another_frame_is_refused_and_the_handle_goes_back(client, rviz, node):
+    client.reset()
+    client.wait(lambda: rviz.place('hand') == [0.0, 0.0, 2.0])
+    before = rviz.look()['hand'].pose
+
+    def is_refused():
+        rviz.drag('hand', (0.5, 0.0, 2.0), frame='elsewhere')
+        return 'refused' in node.output
+    client.wait(is_refused)
     assert "~/handles/feedback refused: frame 'elsewhere' is not known; give it in 'world'" in (
         node.output)
+    client.wait(lambda: rviz.look()['hand'].pose is not before)
+    client.wait(lambda: rviz.place('hand') == [0.0, 0.0, 2.0])
     assert hand(client) == [0.0, 0.0, 2.0]
 
 
-def test_it_ends_well(node):
-    assert 'handles taken away' in node.stop()
+def test_no_such_handle(client, rviz):
+    rviz.drag('foot', (0.0, 0.0, 2.0))
+    rviz.drag('hand', (0.0, 0.0, 2.1))
+    client.wait(lambda: rviz.place('hand') == [0.0, 0.0, 2.1])
+    assert list(rviz.markers) == ['hand']
+
+
+def test_they_are_taken_away_at_the_end(client, rviz, node):
+    node.stop()
+    client.wait(lambda: not rviz.look())
+
+
+def test_a_handle_for_each_anchor(start, connect):
+    rviz = RViz(connect(start('-p', 'scene:=two_anchors', '-p', 'integrator:=rk4',
+                              '-r', '__ns:=/lab', name='/lab/dynsim')))
+    assert sorted(rviz.markers) == ['left', 'right']
+
+
+def test_a_scene_without_anchors_has_none(start, connect):
+    client = connect(start('-p', 'scene:=falling_in_wind', '-p', 'integrator:=rk4',
+                           '-r', '__ns:=/free', name='/free/dynsim'))
+    client.listen({'ball/pose': POSE})
+    topics = [name for name, _ in client.node.get_topic_names_and_types()]
+    assert '/free/dynsim/ball/pose' in topics
+    assert not [name for name in topics if name.startswith('/free') and 'handles' in name]
