@@ -3,9 +3,9 @@
 """
 Ticks that follow each other without the interpreter: compiled code waits for them and publishes.
 
-The states at the next ticks are often known, see Simulator.known_ahead. Their messages are built
-in one go; what is left to be done at each tick is to wake up and to send. The interpreter, its
-lock and whoever else holds that are not needed for it.
+The states at the next ticks are often known, or the step that gives them can be taken now: see
+Simulator.step_ahead. Their messages are built in one go; what is left to be done at each tick is
+to wake up and to send. Neither the interpreter nor its lock, whoever holds that, is needed for it.
 """
 
 import ctypes
@@ -90,7 +90,7 @@ class Bursts:
         if self._run.bag is not None:
             most = min(most, int(_LONGEST_RECORDED / period))
         due, count = self._run.stretch_ahead(most)
-        if count < 2 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
+        if count < 1 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
             return False
         self._tick(due, count, period)
         return True

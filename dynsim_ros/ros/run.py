@@ -132,7 +132,7 @@ class Run:
         """
         Return (Due, count): the next ticks that need nothing but rows, the same ones at each.
 
-        At most so many, whose states are known; 0 where the run is not to go on, or not so.
+        At most so many, whose states are known then; 0 where the run is not to go on, or not so.
         """
         simulator = self.simulator
         if (self.paused or self.waiting or self.finished
@@ -141,9 +141,9 @@ class Run:
             return None, 0
         schedule = self.topics.schedule(simulator.settings.tick_ns, self.bag is not None)
         count = min(schedule.alike_after(simulator.tick), self._ticks_to_end(), most)
-        if count > 1:
-            count = min(simulator.known_ahead(), count)
-        if count < 2:
+        if count > 0:
+            count = min(simulator.step_ahead(), count)
+        if count < 1:
             return None, 0
         return schedule.due(simulator.tick + 1), count
 

@@ -18,6 +18,7 @@ from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
 from .step_memory import recall, remember
 from .trajectory import Trajectory
+from .way_back import way_back
 from ..integrators import DEFAULT_METHOD, IntegrationError, kernel_kind, new_steps
 from ..integrators.entry import entry
 from ..physics.drive import Drive
@@ -65,7 +66,7 @@ class Simulator:
         self.time_ns = 0
         self.tick = 0
         self.failure = None
-        self._steps, self._counted = None, (0, 0)
+        self._steps, self._counted, self._way_back = None, (0, 0), None
         self._build()
         self.layout = Layout(self.scene)
         self._state = initial_state(self.scene, self._model)
@@ -84,8 +85,15 @@ class Simulator:
         self._forget_ahead()
 
     def _forget_ahead(self):
+        self._take_back()
         # States at the next ticks, as far as they are known by now; how many of them are past.
         self._ahead, self._past = (), 0
+
+    def _take_back(self):
+        """Undo steps that no tick has needed yet."""
+        if self._way_back is not None:
+            self._way_back()
+            self._way_back, self._ahead = None, ()
 
     def _begin_steps(self):
         """Let the integration begin at the present instant, under what is in force."""
@@ -106,6 +114,7 @@ class Simulator:
     @property
     def normalisation_removed(self):
         """Return the sum of what normalising the quaternions removed since the last change."""
+        self._take_back()
         return 0.0 if self._steps is None else self._steps.removed
 
     @property
@@ -113,12 +122,14 @@ class Simulator:
         """Return (steps, rejected steps) of the integrator since the start of the epoch."""
         if self._steps is None:
             return self._counted
+        self._take_back()
         return tuple(before + int(count) for before, count
                      in zip(self._counted, self._steps.counts))
 
     @property
     def shortfall(self):
         """Return, in words, what keeps the method from its tolerance; None where nothing does."""
+        self._take_back()
         return None if self._steps is None else self._steps.shortfall
 
     @property
@@ -174,6 +185,7 @@ class Simulator:
         A dict of numbers, lists and such dicts: see docs/rerunning.md.
         """
         anchors, goes_on = self._anchors, self.failure is None
+        self._take_back()
         return {
             'time_ns': self.time_ns, 'tick': self.tick, 'failure': self.failure,
             'state': self._state.tolist(), 'reference_energy': float(self._reference_energy),
@@ -240,6 +252,7 @@ class Simulator:
     def copy(self):
         """Return a Simulator that stands where this one does, and goes its own way from there."""
         other = copy.copy(self)
+        other._way_back = None
         other._state, other._pushes = self._state.copy(), self._pushes.copy()
         other._push_ends, other._anchors = dict(self._push_ends), copy.deepcopy(self._anchors)
         # Entries of kernels are this process's own: a copy may be sent to another one.
@@ -261,6 +274,29 @@ class Simulator:
             self._look_ahead()
         return len(self._ahead) - self._past
 
+    def step_ahead(self):
+        """
+        Take the steps that the next tick needs, if it needs any; return as known_ahead.
+
+        What changes the motion before that tick, or looks at the steps, has them taken back.
+        """
+        known = self.known_ahead()
+        if known or not self._is_begun or self.failure or self._count_even(1) < 1:
+            return known
+        self._forget_ahead()
+        self._way_back = way_back(self._steps)
+        state, tick_ns = np.empty((1, self.layout.size)), self.settings.tick_ns
+        try:
+            self._steps.fill(self.time_ns + tick_ns, tick_ns, state, self._next_change())
+        except IntegrationError:
+            state[:] = np.nan  # the tick itself will say so
+        if _is_finite(state[0]):
+            self._ahead = state
+            self._look_ahead()
+        else:
+            self._take_back()
+        return len(self._ahead)
+
     def instants_ahead(self, count):
         """Return the Instants of that many of the next ticks whose states are known."""
         return self._instants(self.time_ns + self.settings.tick_ns,
@@ -274,6 +310,7 @@ class Simulator:
     def take(self, count):
         """Advance by some ticks, at least one, whose states are known."""
         self._past += count
+        self._way_back = None
         self._state = self._ahead[self._past - 1]
         self.time_ns += count * self.settings.tick_ns
         self.tick += count
@@ -443,9 +480,9 @@ class Simulator:
     def _begin_here(self):
         """Let a step end at the present instant: what follows is under something new."""
         if self._is_begun:
+            self._forget_ahead()
             self._state = self._steps.cut(self.time_ns)
             self._is_begun = False
-            self._forget_ahead()
         self._anchors.rebase(self.time_ns)
 
     def _move_anchor(self, command):

@@ -93,6 +93,16 @@ def test_the_messages_are_those_of_single_ticks(bench):
     assert run.simulator.memory()['state'] == single.memory()['state']
 
 
+def test_the_step_that_the_next_tick_needs_is_taken_before_that_is_due(bench):
+    simulator = bench.run.simulator
+    while known := simulator.known_ahead():
+        simulator.take(known)
+    assert bench.go_on() > 0
+    single = Simulator(SCENE, rate=RATE)
+    single.advance_ticks(simulator.tick)
+    assert simulator.memory()['state'] == single.memory()['state']
+
+
 def test_what_arrives_meanwhile_ends_it_before_the_next_tick(bench):
     done, build = [], bench.run.build_ahead
 
