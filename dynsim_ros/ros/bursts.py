@@ -8,7 +8,6 @@ Simulator.step_ahead. Their messages are built in one go; what is left to be don
 to wake up and to send. Neither the interpreter nor its lock, whoever holds that, is needed for it.
 """
 
-import ctypes
 import time
 
 import numpy as np
@@ -28,18 +27,18 @@ _LONGEST_RECORDED = 10_000_000
 _FEW = 8
 # Ticks that are later than this are left to who can give them up [ns].
 _PATIENCE = 5_000_000
-_MONOTONIC, _ABSOLUTE = time.CLOCK_MONOTONIC, 1
+_MONOTONIC = time.CLOCK_MONOTONIC
 
 
 @kernel
-def _tick_on(sleep, clock, instant, deadlines, spin, alarm, late, spent, rows):
+def _tick_on(sleep, clock, alarm, semaphore, instant, deadlines, spin, late, spent, rows):
     """
     Publish block k of rows at deadline k of the steady clock [ns]; return how many were.
 
-    sleep, clock: addresses of clock_nanosleep and clock_gettime; instant: (3,) a timespec and its
-    address; spin: how long before a deadline to wait busily [ns]; alarm: (1,) ends it before the
-    next tick where it is not 0; late: (ticks,) receives how late each was; spent: (1,) how long
-    publishing took [ns].
+    sleep, clock, alarm, semaphore: functions, flag and semaphore of an Alarm, which ends it before
+    the next tick; instant: (3,) a timespec and its address; spin: how long before a deadline to
+    wait busily [ns]; late: (ticks,) receives how late each was; spent: (1,) how long publishing
+    took [ns].
     """
     for k in range(deadlines.shape[0]):
         deadline = deadlines[k]
@@ -52,7 +51,7 @@ def _tick_on(sleep, clock, instant, deadlines, spin, alarm, late, spent, rows):
             wake = deadline - spin
             if now < wake:
                 instant[0], instant[1] = wake // SECOND, wake % SECOND
-                call(sleep, (_MONOTONIC, _ABSOLUTE, instant[2], 0))
+                call(sleep, (semaphore, _MONOTONIC, instant[2]))
         late[k] = now - deadline
         if late[k] > _PATIENCE or publish_block(rows, k) < rows.publishers.shape[0]:
             return k
@@ -77,14 +76,18 @@ class Bursts:
         self._spent = np.zeros(1, np.int64)
         self._instant = np.zeros(3, np.int64)
         self._instant[2] = self._instant.ctypes.data
-        self._functions = _functions()
         self._tick_on = None
 
-    def go(self):
-        """Do what can be done in this way, before anything else is due; tell whether it was."""
+    def go(self, at_once=False):
+        """
+        Do what can be done in this way, before anything else is due; tell whether it was.
+
+        at_once: let the first tick wait for the deadline of the one before it, not for its own.
+        """
         simulator, pacer = self._run.simulator, self._pacer
         period = simulator.settings.tick_ns / pacer.factor if pacer.factor > 0.0 else 0.0
-        if self._functions is None or not 0.0 < period <= _LONGEST_TICK or not pacer.is_steady:
+        if (self._mailbox.alarm.functions is None or not 0.0 < period <= _LONGEST_TICK
+                or not pacer.is_steady):
             return False
         most = self._most
         if self._run.bag is not None:
@@ -92,22 +95,25 @@ class Bursts:
         due, count = self._run.stretch_ahead(most)
         if count < 1 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
             return False
-        self._tick(due, count, period)
+        self._tick(due, count, period, at_once)
         return True
 
-    def _tick(self, due, count, period):
-        """Run at most so many ticks, all of which have the messages of a Due."""
+    def _tick(self, due, count, period, at_once):
+        """Run at most so many ticks, all of which have the messages of a Due; else as go."""
         run, pacer = self._run, self._pacer
         first, tick_ns = run.simulator.time_ns, run.simulator.settings.tick_ns
         begin = time.monotonic_ns()
         run.build_ahead(due, count)
         deadlines = np.array([pacer.deadline(first + k * tick_ns) for k in range(1, count + 1)])
         built = time.monotonic_ns()
+        if at_once:
+            deadlines[0] = min(deadlines[0], max(built, pacer.deadline(first)))
         self._spent[0] = 0
         if self._tick_on is None:
             self._tick_on = prepare_bursts()
-        done = self._tick_on(*self._functions, self._instant, deadlines, self._spin,
-                             self._mailbox.alarm, self._late, self._spent, due.send.rows)
+        alarm = self._mailbox.alarm
+        done = self._tick_on(*alarm.functions, alarm.flag, alarm.semaphore, self._instant,
+                             deadlines, self._spin, self._late, self._spent, due.send.rows)
         self._most = min(2 * self._most, MOST_AHEAD) if done == count else _FEW
         if done:
             run.was_published(due, done)
@@ -121,14 +127,4 @@ class Bursts:
 def prepare_bursts():
     """Compile, or load from the disk cache, the kernel; return it, see entry."""
     numbers = np.zeros(3, np.int64)
-    return entry(_tick_on, 0, 0, numbers, numbers, 0, numbers, numbers, numbers, no_rows())
-
-
-def _functions():
-    """Return the addresses of clock_nanosleep and clock_gettime, None where they are not there."""
-    try:
-        libc = ctypes.CDLL(None)
-        return tuple(ctypes.cast(function, ctypes.c_void_p).value
-                     for function in (libc.clock_nanosleep, libc.clock_gettime))
-    except (AttributeError, OSError):
-        return None  # another system
+    return entry(_tick_on, 0, 0, numbers, 0, numbers, numbers, 0, numbers, numbers, no_rows())

@@ -5,7 +5,7 @@
 from collections import deque
 import threading
 
-import numpy as np
+from .alarm import Alarm
 
 
 class Mailbox:
@@ -13,8 +13,8 @@ class Mailbox:
     Takes actions from any thread; one thread, the reader, carries them out in order of arrival.
 
     now: function that returns the time at which an action arrives [ns]. As long as there is no
-    reader, actions are carried out where they are handed in. alarm: (1,) int64, for a reader that
-    is at work in compiled code: 1 if it has something else to do.
+    reader, actions are carried out where they are handed in. alarm: Alarm, for a reader that is in
+    compiled code: it has something else to do when that rings.
     """
 
     def __init__(self, now):
@@ -24,7 +24,7 @@ class Mailbox:
         # sleeping does, and can be cut short.
         self._bell = threading.Lock()
         self._bell.acquire()
-        self.alarm = np.zeros(1, np.int64)
+        self.alarm = Alarm()
         self._is_read = False
         self._reader = None
 
@@ -39,10 +39,10 @@ class Mailbox:
             self.next_letter().carry_out()
 
     def tell(self, action):
-        """Have action() done; does not wait, nor wake the reader."""
+        """Have action() done as soon as possible; does not wait for it."""
         if self._is_read:
             self._letters.append(_Letter(self._now(), action))
-            self.alarm[0] = 1
+            self.wake()
         else:
             action()
 
@@ -60,11 +60,15 @@ class Mailbox:
 
     def wake(self):
         """Let the reader return from wait, now or when it waits next."""
-        self.alarm[0] = 1
+        self.alarm.ring()
         try:
             self._bell.release()
         except RuntimeError:
             pass  # it rings already
+
+    def hush(self):
+        """Let a wake before now not count: what it was for is looked at now; for the reader."""
+        self._bell.acquire(blocking=False)
 
     def wait(self, seconds):
         """Wait for so long, or until woken; for the reader."""
@@ -72,7 +76,7 @@ class Mailbox:
 
     def is_quiet(self):
         """Tell whether the reader has nothing to do; the alarm is off then; for the reader."""
-        self.alarm[0] = 0
+        self.alarm.hush()
         return not self._letters and self._bell.locked()
 
     def arrival(self):
@@ -85,7 +89,9 @@ class Mailbox:
 
 
 class _Letter:
-    """An action and when it arrived [ns]."""
+    """An action and when it arrived [ns]; is_awaited: whether somebody waits for its outcome."""
+
+    is_awaited = False
 
     def __init__(self, arrival, action):
         self.arrival = arrival
@@ -98,6 +104,8 @@ class _Letter:
 
 class _Question(_Letter):
     """An action whose outcome somebody waits for."""
+
+    is_awaited = True
 
     def __init__(self, arrival, action):
         super().__init__(arrival, action)

@@ -23,11 +23,11 @@ class Ticker:
     Runs the ticks that are due, and at tick boundaries what the mailbox holds.
 
     A command takes effect at the last tick boundary before it arrived, however late the thread
-    is. What nobody waits for is not run tick by tick, but in one go when somebody asks; the
-    thread sleeps meanwhile. is_ready: function that tells whether the clock runs. error: what
-    the thread failed of, None as long as it has not. options: dict of the node's own parameters;
-    warn: takes a line about what of them is not granted. lateness: Histogram of how long after
-    their deadlines ticks began [ns].
+    is; quick ticks show it at once, see Bursts.go. What nobody waits for is not run tick by tick,
+    but in one go when somebody asks; the thread sleeps meanwhile. is_ready: function that tells
+    whether the clock runs. error: what the thread failed of, None as long as it has not. options:
+    dict of the node's own parameters; warn: takes a line about what of them is not granted.
+    lateness: Histogram of how long after their deadlines ticks began [ns].
     """
 
     def __init__(self, run, pacer, is_ready, options, warn):
@@ -40,6 +40,8 @@ class Ticker:
         self._bursts = Bursts(run, pacer, self.mailbox, self.lateness, self._spin)
         self._ticks_in_one_go = 1
         self._is_ending = False
+        # Whether this turn has carried out what was told, which the next tick is to show.
+        self._is_commanded = False
         self._thread = threading.Thread(target=self._work, name='ticks', daemon=True)
 
     def begin(self):
@@ -59,8 +61,10 @@ class Ticker:
         try:
             self._ask_for_real_time()
             while not self._is_ending:
+                self.mailbox.hush()
+                self._is_commanded = False
                 seconds = self._turn()
-                if seconds > self._spin and not self._bursts.go():
+                if seconds > self._spin and not self._bursts.go(at_once=self._is_commanded):
                     self.mailbox.wait(seconds - self._spin)
         except BaseException as error:
             self.error = error
@@ -110,7 +114,9 @@ class Ticker:
                                        wanted)
                 if due > 0:
                     self._advance(due, wanted, limit)
-            mailbox.next_letter().carry_out()
+            letter = mailbox.next_letter()
+            letter.carry_out()
+            self._is_commanded |= not letter.is_awaited
             arrival = mailbox.arrival()
 
     def _advance(self, due, wanted, limit):

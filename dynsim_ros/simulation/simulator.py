@@ -92,7 +92,8 @@ class Simulator:
     def _take_back(self):
         """Undo steps that no tick has needed yet."""
         if self._way_back is not None:
-            self._way_back()
+            go_back, self._begun_in, self._is_begun = self._way_back
+            go_back()
             self._way_back, self._ahead = None, ()
 
     def _begin_steps(self):
@@ -281,11 +282,13 @@ class Simulator:
         What changes the motion before that tick, or looks at the steps, has them taken back.
         """
         known = self.known_ahead()
-        if known or not self._is_begun or self.failure or self._count_even(1) < 1:
+        if known or self.failure or self._steps is None or self._count_even(1) < 1:
             return known
         self._forget_ahead()
-        self._way_back = way_back(self._steps)
+        self._way_back = way_back(self._steps), self._begun_in, self._is_begun
         state, tick_ns = np.empty((1, self.layout.size)), self.settings.tick_ns
+        if not self._is_begun:
+            self._begin_steps()
         try:
             self._steps.fill(self.time_ns + tick_ns, tick_ns, state, self._next_change())
         except IntegrationError:

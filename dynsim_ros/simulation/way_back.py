@@ -24,49 +24,48 @@ def way_back(steps):
 
 @way_back.register
 def _(motion: ClosedMotion):
-    return lambda: None  # it keeps nothing
+    return _attributes_back(motion)
 
 
 @way_back.register
 def _(steps: FixedSteps):
-    grid, state, removed, taken = steps._grid, steps._state.copy(), steps.removed, steps.steps
-
-    def go_back():
-        steps._grid, steps._state[:] = grid, state
-        steps.removed, steps.steps = removed, taken
-
-    return go_back
+    return _attributes_back(steps, [steps._state] if hasattr(steps, '_state') else [])
 
 
 @way_back.register
 def _(steps: AdaptiveSteps):
-    arrays = steps._kept, steps.states, steps._dense
-    copies = [array.copy() for array in arrays]
-    origin, watch, calm = steps.origin, steps.watch, steps.calm
-
-    def go_back():
-        for array, kept in zip(arrays, copies):
-            array[:] = kept
-        steps.origin, steps.watch, steps.calm = origin, watch, calm
-
-    return go_back
+    return _attributes_back(steps, (steps._kept, steps.states, steps._dense))
 
 
 @way_back.register
 def _(steps: AutoSteps):
-    parts = [way_back(part) for part in filter(None, (steps.explicit, steps.stiff))]
-    at_work = (steps.stiff, steps.current, steps._wait, steps._next_trial, steps._entered,
-               steps._asleep_at)
-
-    def go_back():
-        for part in parts:
-            part()
-        (steps.stiff, steps.current, steps._wait, steps._next_trial, steps._entered,
-         steps._asleep_at) = at_work
-
-    return go_back
+    return _all_back(steps, steps.explicit, steps.stiff)
 
 
 @way_back.register
 def _(motion: AutoMotion):
-    return way_back(motion._current)
+    return _all_back(motion, motion._closed, motion._steps)
+
+
+def _all_back(whole, *parts):
+    """Return way_back of something that is made of such things, or of None."""
+    backs = [_attributes_back(whole), *map(way_back, filter(None, parts))]
+
+    def go_back():
+        for back in backs:
+            back()
+
+    return go_back
+
+
+def _attributes_back(steps, arrays=()):
+    """Return what puts back attributes, and the numbers in arrays that are changed in place."""
+    attributes, copies = dict(vars(steps)), [array.copy() for array in arrays]
+
+    def go_back():
+        vars(steps).clear()
+        vars(steps).update(attributes)
+        for array, numbers in zip(arrays, copies):
+            array[:] = numbers
+
+    return go_back

@@ -3,6 +3,7 @@
 """Ticks that compiled code waits for and publishes are those that the interpreter makes."""
 
 import threading
+import time
 
 from all_listen import AllListen
 from dynsim_ros.cli.rerun import main as rerun
@@ -114,10 +115,25 @@ def test_what_arrives_meanwhile_ends_it_before_the_next_tick(bench):
     bench.run.build_ahead = disturbed
     tick = bench.run.simulator.tick
     assert (bench.go(), bench.went, done) == (0, True, [])
+    bench.mailbox.hush()
     bench.mailbox.next_letter().carry_out()
     assert done == [tick]
     bench.run.build_ahead = build
     assert bench.go_on() > 0
+
+
+@pytest.mark.parametrize('ticks_early', [0, 1])
+def test_what_was_commanded_is_shown_at_once_but_no_more_than_a_tick_early(bench, ticks_early):
+    seen, simulator, tick_ns = [], bench.run.simulator, round(1e9 / RATE)
+    bench.bursts._tick_on = lambda *arguments: seen.append(arguments[5].copy()) or 0
+    bench.pacer.restart(simulator.time_ns - ticks_early * tick_ns)
+    begin = time.monotonic_ns()
+    assert bench.bursts.go(at_once=True)
+    end, (deadlines,) = time.monotonic_ns(), seen
+    due = [bench.pacer.deadline(simulator.time_ns + k * tick_ns)
+           for k in range(len(deadlines) + 1)]
+    assert deadlines[0] == due[0] if ticks_early else begin <= deadlines[0] <= min(end, due[1])
+    assert deadlines[1:].tolist() == due[2:]
 
 
 @pytest.mark.parametrize('prevent', [
@@ -126,7 +142,7 @@ def test_what_arrives_meanwhile_ends_it_before_the_next_tick(bench):
     lambda bench: setattr(bench.pacer, 'factor', 0.0),
     lambda bench: setattr(bench.pacer, 'factor', 0.1),
     lambda bench: setattr(bench.pacer, 'is_steady', False),
-    lambda bench: setattr(bench.bursts, '_functions', None),
+    lambda bench: setattr(bench.mailbox.alarm, 'functions', None),
     lambda bench: setattr(bench.run.topics._sending._rcl, 'publish', None),
     lambda bench: setattr(bench.run.topics._sending, '_is_laid_out', False),
     lambda bench: bench.mailbox.wake()],

@@ -37,6 +37,9 @@ def memories(scene, ahead, parts=PARTS, **settings):
                       simulator.memory()))
         advance(simulator, 1, ahead)
         simulator.apply(PushBody(body, (0.1 * ticks, 0.0, 1.0)))
+        if ahead:
+            # The motion begins anew then, and again with the next command.
+            simulator.step_ahead()
         for anchor in anchors[:1]:
             simulator.apply(MoveAnchor(anchor, (1e-3 * ticks, 0.0, 2.0)))
         advance(simulator, 1, ahead)
