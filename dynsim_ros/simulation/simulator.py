@@ -76,13 +76,13 @@ class Simulator:
         self._reference_energy = self._energy()
 
     def _build(self):
+        self._forget_ahead()
         self._model, self._energies = build_model(self.scene), None
         if self._steps is not None:
             self._counted = self.counts
         self._steps = None
         # In which state the motion that now goes on began, if it has begun.
         self._begun_in, self._is_begun = None, False
-        self._forget_ahead()
 
     def _forget_ahead(self):
         self._take_back()
@@ -370,9 +370,9 @@ class Simulator:
         """Advance by ticks without a change among them, as far as all is well; return states."""
         if self.failure is not None:
             return ()
+        self._forget_ahead()
         if not self._is_begun:
             self._begin_steps()
-        self._forget_ahead()
         tick_ns = self.settings.tick_ns
         states = np.full((count, self.layout.size), np.nan)
         problem = None
@@ -446,9 +446,9 @@ class Simulator:
 
     def _integrate_to(self, end, change):
         """Take steps until an instant has been reached or passed; change: see _next_change."""
+        self._forget_ahead()
         if not self._is_begun:
             self._begin_steps()
-        self._forget_ahead()
         try:
             state = self._steps.state_at(end, change)
         except IntegrationError as error:
@@ -482,8 +482,8 @@ class Simulator:
 
     def _begin_here(self):
         """Let a step end at the present instant: what follows is under something new."""
+        self._forget_ahead()
         if self._is_begun:
-            self._forget_ahead()
             self._state = self._steps.cut(self.time_ns)
             self._is_begun = False
         self._anchors.rebase(self.time_ns)

@@ -76,6 +76,25 @@ def test_a_method_that_goes_over_to_the_stiff_one_and_back():
     assert len({memory['steps']['steps']['is_stiff'] for memory in found[0]}) == 2
 
 
+@pytest.mark.parametrize('method', ['auto', 'rk4'])
+@pytest.mark.parametrize('go_on', [
+    lambda simulator: simulator.advance_ticks(5), lambda simulator: simulator.advance(5_000_000),
+    lambda simulator: simulator.apply(SetValues({'gravity': 5.0})), Simulator.prepare,
+    Simulator.reset], ids=['ticks', 'time', 'values', 'prepare', 'reset'])
+def test_whatever_comes_after_a_beginning_that_was_ahead(method, go_on):
+    found = []
+    for ahead in False, True:
+        simulator = Simulator(load_scene('sphere_on_spring'), rate=1000.0, integrator=method)
+        advance(simulator, 20, ahead)
+        simulator.apply(MoveAnchor('hand', (0.1, 0.0, 2.0)))
+        if ahead:
+            assert simulator.step_ahead() > 0
+        go_on(simulator)
+        advance(simulator, 20, ahead=False)
+        found.append(simulator.memory())
+    assert found[0] == found[1]
+
+
 def test_divergence_comes_with_its_tick():
     found = []
     for ahead in False, True:
