@@ -18,8 +18,8 @@ from tree import output_of, ROOT
 SCRIPT = ROOT / 'test' / 'hash_of_runs.py'
 # A C library that takes the processor for one without FMA and AVX2.
 PLAINER = {'GLIBC_TUNABLES': 'glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2'}
-# What a kernel may call: what IEEE 754 fixes to the last bit, work on integers and memory, what has
-# to do with being called from Python, and hints to the compiler, of which no code is made.
+# What a kernel may call: what IEEE 754 fixes to the last bit, work on integers and memory, what
+# has to do with being called from Python, and hints to the compiler, of which no code is made.
 HARMLESS = re.compile(r'(llvm\.)?(sqrt|fma|floor|fabs|copysign|is\.fpclass)\b'
                       r'|llvm\.(?!pow).*\.(v\d+)?i\d+$|llvm\.(mem|masked|stack|lifetime|assume)'
                       r'|Py|numba_|NRT_')
