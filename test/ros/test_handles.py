@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Handles by which anchors are dragged, looked at and taken hold of as RViz does."""
 
+from geometry_msgs.msg import Point, PointStamped
 import pytest
 from rviz import RViz
 from scene_topics import DIAGNOSTICS, POSE, positions
@@ -29,6 +30,10 @@ def hand(client):
     return list(positions([client.last('hand/pose')])[0])
 
 
+def moved_to(x, y, z):
+    return PointStamped(point=Point(x=x, y=y, z=z))
+
+
 def test_there_is_a_handle_at_the_anchor(rviz):
     (marker,) = rviz.markers.values()
     assert (marker.name, marker.header.frame_id) == ('hand', 'world')
@@ -46,6 +51,8 @@ def test_the_anchor_follows_the_handle(client, rviz):
 def test_the_handle_follows_the_anchor(client, rviz):
     client.reset()
     client.wait(lambda: rviz.place('hand') == [0.0, 0.0, 2.0])
+    client.publish('hand/command', moved_to(-0.1, 0.0, 1.9))
+    client.wait(lambda: rviz.place('hand') == [-0.1, 0.0, 1.9])
 
 
 def test_who_comes_later_is_shown_the_same(client, rviz, connect, node):
@@ -101,10 +108,17 @@ def test_they_are_taken_away_at_the_end(client, rviz, node):
     client.wait(lambda: not rviz.look())
 
 
-def test_a_handle_for_each_anchor(start, connect):
-    rviz = RViz(connect(start('-p', 'scene:=two_anchors', '-p', 'integrator:=rk4',
-                              '-r', '__ns:=/lab', name='/lab/dynsim')))
+def test_a_handle_for_each_anchor_by_other_names(start, connect):
+    renamed = [part for name in ('update', 'feedback', 'get_interactive_markers')
+               for part in ('-r', f'~/handles/{name}:=/seen/{name}')]
+    client = connect(start('-p', 'scene:=two_anchors', '-p', 'integrator:=rk4', *renamed,
+                           '-r', '__ns:=/lab', name='/lab/dynsim'))
+    rviz = RViz(client, '/seen')
     assert sorted(rviz.markers) == ['left', 'right']
+    left = rviz.place('left')
+    client.publish('right/command', moved_to(0.5, 0.0, 1.5))
+    client.wait(lambda: rviz.place('right') == [0.5, 0.0, 1.5])
+    assert rviz.place('left') == left
 
 
 def test_a_scene_without_anchors_has_none(start, connect):

@@ -24,8 +24,8 @@ from scene_topics import (
 from std_srvs.srv import SetBool
 
 TICK = 10_000_000
-# the last two where tf2_msgs and interactive_markers are installed
-OTHERS_HAVE_THEM = {'/rosout', '/parameter_events', '/diagnostics', '/tf', 'handles/update'}
+# the last but one where there is an anchor, the last where tf2_msgs is installed
+OTHERS_HAVE_THEM = {'/rosout', '/parameter_events', '/diagnostics', 'handles/update', '/tf'}
 OF_EVERY_SCENE = {'epoch': EPOCH, 'state_hash': HASH}
 
 
