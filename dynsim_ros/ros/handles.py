@@ -53,8 +53,10 @@ class Handles:
     def look(self):
         """Let the handles follow, or not, as there is somebody who sees them."""
         is_seen = self._node.count_subscribers(self._updates) > 0
-        if is_seen == self._timer.is_canceled():
-            self._timer.reset() if is_seen else self._timer.cancel()
+        if not is_seen:
+            self._timer.cancel()
+        elif self._timer.is_canceled():
+            self._timer.reset()
 
     def end(self):
         """Take the handles away; while ROS is still there."""
