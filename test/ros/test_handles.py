@@ -103,9 +103,9 @@ def test_no_such_handle(client, rviz):
     assert list(rviz.markers) == ['hand']
 
 
-def test_they_are_taken_away_at_the_end(client, rviz, node):
+def test_they_go_with_the_node(client, node):
     node.stop()
-    client.wait(lambda: not rviz.look())
+    client.wait(lambda: not client.node.count_publishers(client.full('handles/update')))
 
 
 def test_a_handle_for_each_anchor_by_other_names(start, connect):
