@@ -16,14 +16,20 @@ def picture(page, part='canvas[data-engine]'):
     return imageio.v3.imread(page.screenshot(clip=box))[..., :3]
 
 
+def is_blue(picture):
+    """Return where a picture (…, 3) is as blue as the body: (…) of bool."""
+    red, green, blue = np.moveaxis(picture.astype(int), -1, 0)
+    return (blue > red + 60) & (blue > green + 40)
+
+
 def body(page):
     """Return the middle of the body, which is blue: (x, y) [pixels of the page], or None."""
-    red, green, blue = np.moveaxis(picture(page).astype(int), -1, 0)
-    rows, columns = np.nonzero((blue > red + 60) & (blue > green + 40))
+    seen = is_blue(picture(page))
+    rows, columns = np.nonzero(seen)
     if len(rows) < 10:
         return None
     box = page.locator('canvas[data-engine]').bounding_box()
-    return np.array([box['x'], box['y']]) + box['width'] / red.shape[1] * np.array(
+    return np.array([box['x'], box['y']]) + box['width'] / seen.shape[1] * np.array(
         [np.median(columns), np.median(rows)])
 
 

@@ -6,7 +6,7 @@ from accessibility import faults
 from bag_numbers import row
 import numpy as np
 import pytest
-from seen import body, DESKTOP, PHONE
+from seen import body, DESKTOP, is_blue, PHONE, picture
 
 
 @pytest.fixture(scope='module')
@@ -68,6 +68,16 @@ def test_names_and_contrasts(page):
     for scheme in ('dark', 'light'):
         page.evaluate(f'document.documentElement.dataset.mantineColorScheme = "{scheme}"')
         assert faults(page) == []
+
+
+def test_the_controls_of_a_phone_hide_nothing_of_the_body(open_page, process):
+    page = open_page(process.url, PHONE)
+    pause(page)
+    wait_for_picture(page)
+    seen = picture(page)
+    title = page.get_by_text('run.mcap').bounding_box()['y'] * len(seen) / PHONE['height']
+    rows, _ = np.nonzero(is_blue(seen[:int(title)]))
+    assert 10 < len(rows) and rows.max() < 0.95 * title
 
 
 def test_plays_and_obeys_the_keyboard(page):
