@@ -19,20 +19,25 @@ class RViz:
         self._client, self._namespace = client, namespace
         client.listen({f'{namespace}/update': UPDATE})
         self._seen = 0
-        response = client.call(f'{namespace}/get_interactive_markers', GetInteractiveMarkers)
-        self._number = response.sequence_number
-        self.markers = {marker.name: marker for marker in response.markers}
+        self._ask()
 
     def look(self):
-        """Apply the changes that have come, none of which may be missing; return the markers."""
+        """Apply the changes that have come, or ask anew where one is missing; return markers."""
         updates = self._client.messages(f'{self._namespace}/update')
         for update in updates[self._seen:]:
-            if update.seq_num > self._number:
-                assert update.type == update.UPDATE
-                assert update.seq_num == self._number + 1
+            assert update.type == update.UPDATE
+            if update.seq_num == self._number + 1:
                 self._apply(update)
+            elif update.seq_num > self._number:
+                self._ask()
         self._seen = len(updates)
         return self.markers
+
+    def _ask(self):
+        response = self._client.call(f'{self._namespace}/get_interactive_markers',
+                                     GetInteractiveMarkers)
+        self._number = response.sequence_number
+        self.markers = {marker.name: marker for marker in response.markers}
 
     def _apply(self, update):
         self._number = update.seq_num

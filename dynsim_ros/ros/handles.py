@@ -36,7 +36,7 @@ def handles_for(node, scene, snapshot, drag):
 
 
 class Handles:
-    """A handle for each anchor of a scene; while somebody looks on, they follow their anchors."""
+    """A handle for each anchor of a scene, which it follows, quicker where somebody sees it."""
 
     def __init__(self, node, scene, snapshot, drag):
         self._node, self._snapshot, self._drag = node, snapshot, drag
@@ -51,7 +51,8 @@ class Handles:
                                         clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def look(self):
-        """Let the handles follow, or not, as there is somebody who sees them."""
+        """Put the handles where the anchors are; go on with that if there is who sees them."""
+        self._follow()
         is_seen = self._node.count_subscribers(self._updates) > 0
         if not is_seen:
             self._timer.cancel()
