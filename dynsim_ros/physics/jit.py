@@ -138,7 +138,7 @@ def kernel(function):
     same bits in every run. The plain function stays as the attribute py_func; with numba's
     environment variable NUMBA_DISABLE_JIT=1 it is what is returned.
     """
-    # No wrapper for calls from C, which nobody makes: those that the Model makes long.
+    # Nobody calls it from C; a wrapper for that unpacks the whole Model, and is slow to compile.
     return _compiled(function, no_cfunc_wrapper=True)
 
 
