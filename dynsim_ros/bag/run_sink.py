@@ -79,10 +79,11 @@ class RunSink:
     def _put_others(self, simulator, stamp_ns):
         """Record what is no row and due at a tick."""
         time_ns, tick_ns = simulator.time_ns, simulator.settings.tick_ns
-        messages = {channel.topic: channel.encode(simulator.snapshot(), stamp_ns)
-                    for channel in self._others if channel.is_due(simulator.tick, tick_ns)}
-        if messages:
-            self._bag.put(stamp_ns, messages)
+        due = [channel for channel in self._others if channel.is_due(simulator.tick, tick_ns)]
+        if due:
+            snapshot = simulator.snapshot()
+            self._bag.put(stamp_ns, {channel.topic: channel.encode(snapshot, stamp_ns)
+                                     for channel in due})
         self._tell(time_ns)
 
     def command(self, time_ns, command):

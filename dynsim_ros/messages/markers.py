@@ -38,7 +38,9 @@ class _Markers:
         parts += [_anchor(i, scale) for i in range(len(scene.anchors))]
         parts += [_spring(scene, spring, i, scale) for i, spring in enumerate(scene.springs)]
         self._numbers = [numbers for _, numbers in parts]
-        self._pack = Template(MARKERS, {'markers': [marker for marker, _ in parts]}).pack
+        first = len(parts) - len(scene.springs)
+        self._pack = Template(MARKERS, {'markers': [marker for marker, _ in parts]}, blocks=[
+            f'markers.{i}.points' for i in range(first, len(parts))]).pack
 
     def encode(self, snapshot, stamp_ns):
         """Return the message for a snapshot of the scene."""
@@ -101,7 +103,7 @@ def _rgba(color):
     return dict(zip('rgba', color))
 
 
-# Each of the following gives a marker and what fills in its free numbers from a snapshot.
+# Each of the following gives a marker and what fills in its leaves from a snapshot.
 
 def _body(body, number, scale):
     size = _size(body, scale)
@@ -138,8 +140,9 @@ def _spring(scene, spring, number, scale):
                      points=[{}] * (len(_COIL_ALONG) + 2))
 
     def points(snapshot):
-        return coil(_end(scene, spring.from_, spring.from_offset, snapshot),
-                    _end(scene, spring.to, spring.to_offset, snapshot), radius).ravel().tolist()
+        points = coil(_end(scene, spring.from_, spring.from_offset, snapshot),
+                      _end(scene, spring.to, spring.to_offset, snapshot), radius)
+        return (points.astype('<f8', copy=False).tobytes(),)
 
     return marker, points
 

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import struct
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ from .primitives import code, LITTLE_ENDIAN, number_bytes, SIZES, string_bytes
 
 
 class Place(NamedTuple):
-    """Where a number of a message stands: its first byte, and its letter in the struct module."""
+    """Where a leaf of a message stands: its first byte, and its code in the struct module."""
 
     start: int
     code: str
@@ -30,15 +30,15 @@ class Template:
     (each has to be given, its length stays), and any numbers. leaves: dotted names of all other
     numbers in wire order, such as 'header.stamp.sec' or 'pose.position.x'; places: {leaf: Place}.
     size: of the message in bytes, with the 4-byte header; content: its bytes, all leaves zero;
-    padding: indices of the bytes that mean nothing.
+    padding: indices of the bytes that mean nothing. blocks: names of sequences of float64 that are
+    one leaf each, given as bytes.
     """
 
-    def __init__(self, type_name: str, fixed: Mapping | None = None):
+    def __init__(self, type_name: str, fixed: Mapping | None = None, blocks: Sequence[str] = ()):
         """Lay the message out; raises ValueError naming the field where it has no fixed size."""
         self.type_name = type_name
         self.places: dict[str, Place] = {}
-        content, padding, layout = bytearray(LITTLE_ENDIAN), [], ['<']
-        end = 0
+        content, padding = bytearray(LITTLE_ENDIAN), []
         for leaf, alignment, item in _items(type_name, fixed or {}, type_name, ''):
             start = len(content) + (len(LITTLE_ENDIAN) - len(content)) % alignment
             padding += range(len(content), start)
@@ -46,20 +46,29 @@ class Template:
             if isinstance(item, bytes):
                 content += item
                 continue
-            self.places[leaf] = Place(start, item)
+            self._place(leaf, start, item, blocks)
             content += bytes(alignment)
-            layout.append(f'{start - end}x{item}')
-            end = len(content)
         self.leaves = tuple(self.places)
         self.size = len(content)
         self.content = bytes(content)
         self.padding = tuple(padding)
-        self._pack = struct.Struct(f'{"".join(layout)}{self.size - end}x').pack
+        self._pack = struct.Struct(_layout(self.places.values(), self.size)).pack
         self._constant = np.frombuffer(self.content, np.uint8)
+
+    def _place(self, leaf, start, item, blocks):
+        """Take note of a leaf, or that it is the next number of a block."""
+        block = next((name for name in blocks if leaf.startswith(f'{name}.')), None)
+        if block is None:
+            self.places[leaf] = Place(start, item)
+            return
+        assert item == 'd', f'{leaf} is no float64'
+        first = self.places[block].start if block in self.places else start
+        size = start + SIZES['float64'] - first
+        self.places[block] = Place(first, f'{size}s')
 
     def pack(self, *values) -> bytes:
         """
-        Return the message as CDR bytes; values: one number for each of `leaves`, in order.
+        Return the message as CDR bytes; values: one for each of `leaves`, in order.
 
         Raises ValueError for a wrong count or a value that does not fit its type.
         """
@@ -72,6 +81,15 @@ class Template:
             raise ValueError(f'{self.type_name}: {values} does not fit: {error}') from None
         # Each of the two is zero where the other one is not.
         return (np.frombuffer(numbers, np.uint8) | self._constant).tobytes()
+
+
+def _layout(places, size):
+    """Return the format of the struct module for leaves at some Places and zeros between them."""
+    parts, end = ['<'], 0
+    for start, item in places:
+        parts.append(f'{start - end}x{item}')
+        end = start + struct.calcsize(f'<{item}')
+    return f'{"".join(parts)}{size - end}x'
 
 
 def _items(type_name: str, fixed, where: str, prefix: str) -> Iterator[tuple]:

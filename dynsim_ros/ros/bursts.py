@@ -16,13 +16,13 @@ from .calling import call
 from .pacing import SECOND
 from .sending import no_rows, publish_block, Together
 from ..integrators.entry import entry
-from ..physics.jit import kernel
+from ..physics.jit import formula, kernel
 from ..simulation.simulator import MOST_AHEAD
 
 # So long ticks are at most [ns]: who asks for something waits for the end of one.
 _LONGEST_TICK = 2_000_000
 # So long a burst lasts at most that is recorded [ns]: what is to be recorded waits until then.
-_LONGEST_RECORDED = 10_000_000
+_LONGEST_RECORDED = 15_000_000
 # After something else had to be done, as a command, less is built that may be of no use.
 _FEW = 8
 # Ticks that are later than this are left to who can give them up [ns].
@@ -30,34 +30,55 @@ _PATIENCE = 5_000_000
 _MONOTONIC = time.CLOCK_MONOTONIC
 
 
+@formula
+def _wait(sleep, clock, alarm, semaphore, instant, deadline, spin):
+    """
+    Wait until a deadline of the steady clock [ns] or until an Alarm rings; return what time it is.
+
+    sleep, clock, alarm, semaphore: functions, flag and semaphore of the Alarm; instant: (3,) a
+    timespec and its address; spin: how long before the deadline to wait busily [ns].
+    """
+    now = 0
+    while now < deadline:
+        call(clock, (_MONOTONIC, instant[2]))
+        now = instant[0] * SECOND + instant[1]
+        if alarm[0] != 0:
+            break
+        wake = deadline - spin
+        if now < wake:
+            instant[0], instant[1] = wake // SECOND, wake % SECOND
+            call(sleep, (semaphore, _MONOTONIC, instant[2]))
+    return now
+
+
 @kernel
 def _tick_on(sleep, clock, alarm, semaphore, instant, deadlines, spin, late, spent, rows):
     """
     Publish block k of rows at deadline k of the steady clock [ns]; return how many were.
 
-    sleep, clock, alarm, semaphore: functions, flag and semaphore of an Alarm, which ends it before
-    the next tick; instant: (3,) a timespec and its address; spin: how long before a deadline to
-    wait busily [ns]; late: (ticks,) receives how late each was; spent: (1,) how long publishing
-    took [ns].
+    Where nobody listens, all are left to the last deadline. An alarm ends it before the next tick.
+    For most arguments see _wait. late: (ticks,) receives how late each was; spent: (1,) how long
+    publishing took [ns].
     """
-    for k in range(deadlines.shape[0]):
-        deadline = deadlines[k]
-        now = 0
-        while now < deadline:
-            call(clock, (_MONOTONIC, instant[2]))
-            now = instant[0] * SECOND + instant[1]
-            if alarm[0] != 0:
+    count = deadlines.shape[0]
+    if rows.publishers.shape[0] == 0:
+        now = _wait(sleep, clock, alarm, semaphore, instant, deadlines[count - 1], spin)
+        for k in range(count):
+            if deadlines[k] > now:
                 return k
-            wake = deadline - spin
-            if now < wake:
-                instant[0], instant[1] = wake // SECOND, wake % SECOND
-                call(sleep, (semaphore, _MONOTONIC, instant[2]))
-        late[k] = now - deadline
+            late[k] = 0
+        late[count - 1] = now - deadlines[count - 1]
+        return count
+    for k in range(count):
+        now = _wait(sleep, clock, alarm, semaphore, instant, deadlines[k], spin)
+        if alarm[0] != 0:
+            return k
+        late[k] = now - deadlines[k]
         if late[k] > _PATIENCE or publish_block(rows, k) < rows.publishers.shape[0]:
             return k
         call(clock, (_MONOTONIC, instant[2]))
         spent[0] += instant[0] * SECOND + instant[1] - now
-    return deadlines.shape[0]
+    return count
 
 
 class Bursts:
@@ -80,26 +101,30 @@ class Bursts:
 
     def go(self, at_once=False):
         """
-        Do what can be done in this way, before anything else is due; tell whether it was.
+        Run ticks in this way before anything else is to be done; return how many could be.
 
         at_once: let the first tick wait for the deadline of the one before it, not for its own.
         """
         simulator, pacer = self._run.simulator, self._pacer
         period = simulator.settings.tick_ns / pacer.factor if pacer.factor > 0.0 else 0.0
         if (self._mailbox.alarm.functions is None or not 0.0 < period <= _LONGEST_TICK
-                or not pacer.is_steady):
-            return False
+                or not pacer.is_steady or self._is_too_late(period)):
+            return 0
         most = self._most
         if self._run.bag is not None:
             most = min(most, int(_LONGEST_RECORDED / period))
         due, count = self._run.stretch_ahead(most)
         if count < 1 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
-            return False
-        self._tick(due, count, period, at_once)
-        return True
+            return 0
+        return self._tick(due, count, period, at_once)
+
+    def _is_too_late(self, period):
+        """Tell whether the next tick is, one that comes after so long [ns]."""
+        pacer = self._pacer
+        return pacer.now() - pacer.deadline(self._run.simulator.time_ns) > period + _PATIENCE
 
     def _tick(self, due, count, period, at_once):
-        """Run at most so many ticks, all of which have the messages of a Due; else as go."""
+        """Run at most so many ticks, all with the messages of a Due; return how many were run."""
         run, pacer = self._run, self._pacer
         first, tick_ns = run.simulator.time_ns, run.simulator.settings.tick_ns
         begin = time.monotonic_ns()
@@ -122,6 +147,7 @@ class Bursts:
             self._lateness.add(late)
             pacer.late += late >= period
         run.work['publish'] += built - begin + int(self._spent[0])
+        return done
 
 
 def prepare_bursts():

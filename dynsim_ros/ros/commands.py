@@ -71,7 +71,7 @@ class Commands:
     def _tell(self, command):
         """Have a command carried out if it is valid: which names there are never changes."""
         command = checked(command, self._run.simulator.scene)
-        self._mailbox.tell(lambda: self._run.command(command))
+        self._mailbox.tell(lambda: self._run.carry_out(command))
 
     def _set(self, message):
         try:

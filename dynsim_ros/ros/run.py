@@ -196,6 +196,10 @@ class Run:
         """Carry out a command and record it; raise SceneError if it is refused."""
         self._record_command(self.simulator.apply(command))
 
+    def carry_out(self, command):
+        """Do the same with what `checked` has returned."""
+        self._record_command(self.simulator.carry_out(command))
+
     def set_values(self, values):
         """Carry out a change of quantities or settings that was checked before."""
         if values:

@@ -9,7 +9,7 @@ from .bursts import Bursts
 from .histogram import Histogram
 from .inbox import Mailbox
 from .pacing import LONGEST_LAG, LONGEST_PERIOD, SECOND
-from .real_time import be_first, end_timer_slack, lock_memory, stay_on
+from .real_time import be_first, end_timer_slack, lock_memory, stay_on, take_short_turns
 
 # How long ticks may run before commands get their turn.
 BATCH = SECOND // 200
@@ -63,9 +63,11 @@ class Ticker:
             while not self._is_ending:
                 self.mailbox.hush()
                 self._is_commanded = False
-                seconds = self._turn()
-                if seconds > self._spin and not self._bursts.go(at_once=self._is_commanded):
-                    self.mailbox.wait(seconds - self._spin)
+                self._carry_out()
+                if not self._bursts.go(at_once=self._is_commanded):
+                    seconds = self._turn()
+                    if seconds > self._spin:
+                        self.mailbox.wait(seconds - self._spin)
         except BaseException as error:
             self.error = error
         finally:
@@ -73,6 +75,7 @@ class Ticker:
 
     def _ask_for_real_time(self):
         end_timer_slack()
+        take_short_turns()
         options, refusals = self._options, []
         if options['real_time.cpu'] >= 0.0:
             refusals.append(stay_on(int(options['real_time.cpu'])))
@@ -85,7 +88,6 @@ class Ticker:
 
     def _turn(self):
         """Do what is due; return how long there is nothing to do [s]."""
-        self._carry_out()
         if not self._goes_on():
             return LONGEST_PERIOD / SECOND
         simulator, wanted = self._run.simulator, self._run.ticks_to_wanted()

@@ -87,9 +87,9 @@ class Topics:
         if due.rows.numbers:
             self.rows.fill(simulator.instant(), stamp_ns, due.rows)
             due.send()
-        others = {}
+        others, snapshot = {}, simulator.snapshot() if due.others else None
         for channel, publisher in due.others:
-            others[channel.topic] = data = channel.encode(simulator.snapshot(), stamp_ns)
+            others[channel.topic] = data = channel.encode(snapshot, stamp_ns)
             if publisher is not None:
                 publisher.publish(data)
         self.were_published(due, simulator.tick, 1)

@@ -420,7 +420,10 @@ class Simulator:
         Returns the command with its values as they are in force. Raises CommandError or
         SceneError, and has then changed nothing.
         """
-        command = checked(command, self.scene)
+        return self.carry_out(checked(command, self.scene))
+
+    def carry_out(self, command):
+        """Do the same with what `checked` has returned."""
         if isinstance(command, MoveAnchor):
             self._move_anchor(command)
         elif isinstance(command, PushBody):

@@ -5,9 +5,11 @@
 from pathlib import Path
 import time
 
+from dynsim_ros.cli.rerun import main as rerun
 from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation import MoveAnchor, Simulator
 from geometry_msgs.msg import PointStamped
+from mcap.reader import make_reader
 import pytest
 from ros_client import stamps
 from scene_topics import DIAGNOSTICS, POSE, positions
@@ -91,6 +93,33 @@ def test_a_command_that_nobody_sees(start, connect):
     found = positions([message]).tolist()[0]
     # it took effect at one of the ticks between, and at none else
     assert found in [after_command(at, tick + 1) for at in range(max(tick - 1500, 0), tick + 2)]
+
+
+def test_what_is_only_recorded(start, connect):
+    """Every tick is in the bag, also those around commands, but none wakes the node on its own."""
+    # a method whose steps go past many ticks
+    node = start('-p', 'rate:=1000.0', '-p', 'integrator:=extrapolation', '-p',
+                 'record.enable:=true', '-r', '__ns:=/recorded', name='/recorded/dynsim')
+    client = connect(node)
+    client.wait(lambda: node.bags)
+    begin, awake = time.monotonic(), times_awake(node)
+    time.sleep(1.5)
+    awake, seconds = times_awake(node) - awake, time.monotonic() - begin
+    command = PointStamped()
+    for i in range(20):
+        command.point.x, command.point.z = 0.01 * i, 2.0
+        client.publish('hand/command', command)
+        time.sleep(0.01)
+    tick = int(client.pause().message.split()[3].rstrip(','))
+    node.stop()
+    (bag,) = node.bags
+    with bag.open('rb') as stream:
+        times = [message.log_time for *_, message in make_reader(stream).iter_messages(
+            ['/recorded/dynsim/sphere/pose'])]
+    assert times == list(range(0, (tick + 1) * TICK, TICK))
+    assert rerun([str(bag)]) == 0
+    # all that is written and all that the middleware does included
+    assert awake < 1000 * seconds / 2
 
 
 def after_command(at, ticks):
