@@ -113,22 +113,23 @@ class Bursts:
         most = self._most
         if self._run.bag is not None:
             most = min(most, int(_LONGEST_RECORDED / period))
-        due, count = self._run.stretch_ahead(most)
-        if count < 1 or not isinstance(due.send, Together) or not self._mailbox.is_quiet():
+        stretch = self._run.stretch_ahead(most)
+        if (stretch is None or not isinstance(stretch.due.send, Together)
+                or not self._mailbox.is_quiet()):
             return 0
-        return self._tick(due, count, period, at_once)
+        return self._tick(stretch, period, at_once)
 
     def _is_too_late(self, period):
         """Tell whether the next tick is, one that comes after so long [ns]."""
         pacer = self._pacer
         return pacer.now() - pacer.deadline(self._run.simulator.time_ns) > period + _PATIENCE
 
-    def _tick(self, due, count, period, at_once):
-        """Run at most so many ticks, all with the messages of a Due; return how many were run."""
-        run, pacer = self._run, self._pacer
+    def _tick(self, stretch, period, at_once):
+        """Run the ticks of a Stretch, as far as nothing ends it; return how many were run."""
+        run, pacer, count = self._run, self._pacer, stretch.count
         first, tick_ns = run.simulator.time_ns, run.simulator.settings.tick_ns
         begin = time.monotonic_ns()
-        run.build_ahead(due, count)
+        run.build_ahead(stretch)
         deadlines = np.array([pacer.deadline(first + k * tick_ns) for k in range(1, count + 1)])
         built = time.monotonic_ns()
         if at_once:
@@ -138,10 +139,10 @@ class Bursts:
             self._tick_on = prepare_bursts()
         alarm = self._mailbox.alarm
         done = self._tick_on(*alarm.functions, alarm.flag, alarm.semaphore, self._instant,
-                             deadlines, self._spin, self._late, self._spent, due.send.rows)
+                             deadlines, self._spin, self._late, self._spent, stretch.due.send.rows)
         self._most = min(2 * self._most, MOST_AHEAD) if done == count else _FEW
         if done:
-            run.was_published(due, done)
+            run.was_published(stretch, done)
             pacer.is_up_to_date()
         for late in self._late[:done].tolist():
             self._lateness.add(late)

@@ -130,42 +130,43 @@ class Run:
 
     def stretch_ahead(self, most):
         """
-        Return (Due, count): the next ticks that need nothing but rows, the same ones at each.
+        Return the Stretch of the next ticks, at most so many, whose states are known then.
 
-        At most so many, whose states are known then; 0 where the run is not to go on, or not so.
+        None where the run is not to go on, or not so.
         """
         simulator = self.simulator
         if (self.paused or self.waiting or self.finished
                 or (self._options['publish_clock'] and self._clock.is_heard)
                 or (self.bag is not None and not self.bag.can_put_many)):
-            return None, 0
+            return None
         schedule = self.topics.schedule(simulator.settings.tick_ns, self.bag is not None)
-        count = min(schedule.alike_after(simulator.tick), self._ticks_to_end(), most)
-        if count > 0:
-            count = min(simulator.step_ahead(), count)
+        stretch = schedule.stretch(simulator.tick, min(self._ticks_to_end(), most))
+        count = 0 if stretch is None else simulator.step_ahead()
         if count < 1:
-            return None, 0
-        return schedule.due(simulator.tick + 1), count
+            return None
+        return stretch if count >= stretch.count else stretch._replace(count=count, others=[])
 
-    def build_ahead(self, due, count):
-        """Build the messages of so many ticks that stretch_ahead returned."""
+    def build_ahead(self, stretch):
+        """Build the rows of a Stretch that stretch_ahead returned."""
         simulator = self.simulator
-        self.topics.rows.fill(simulator.instants_ahead(count),
-                              self.stamp_ns + simulator.settings.tick_ns, due.rows)
+        self.topics.rows.fill(simulator.instants_ahead(stretch.count),
+                              self.stamp_ns + simulator.settings.tick_ns, stretch.due.rows)
 
-    def was_published(self, due, count):
-        """Take note that the first so many of them were published; record them."""
+    def was_published(self, stretch, done):
+        """Take note that its first so many were published; record them, and do what is left."""
         simulator, before = self.simulator, self.stamp_ns
-        simulator.take(count)
-        self.topics.were_published(due, simulator.tick, count)
+        simulator.take(done)
+        begin = time.monotonic_ns()
+        others = self.topics.were_published(stretch, done, simulator, self.stamp_ns)
+        published = time.monotonic_ns()
         if self.bag is not None:
-            begin = time.monotonic_ns()
             tick_ns = simulator.settings.tick_ns
             self.bag.recorder.wait = self._may_wait()
             self.bag.put_many_rows(self.topics.rows,
-                                   before + tick_ns * np.arange(1, count + 1), due.rows)
-            self._tell_news(self.bag)
-            self.work['record'] += time.monotonic_ns() - begin
+                                   before + tick_ns * np.arange(1, done + 1), stretch.due.rows)
+            self.record(others)
+        self.work['publish'] += published - begin
+        self.work['record'] += time.monotonic_ns() - published
 
     def _may_wait(self):
         """Tell whether the run may wait for the disk: one that is to be faster than time."""

@@ -18,13 +18,24 @@ class Due(NamedTuple):
     What to build at a tick.
 
     rows: Wanted; send: publishes those that are heard, see Sending; others: [(channel,
-    publisher)] of what is no row, the publisher None where nobody listens; count: of messages.
+    publisher)] of what is no row, the publisher None where nobody listens.
     """
 
     rows: Wanted
     send: Callable
     others: list
+
+
+class Stretch(NamedTuple):
+    """
+    Ticks in a row whose messages are the same rows: a Due of each, and how many they are.
+
+    others: what is due besides at the last of them, as in Due.
+    """
+
+    due: Due
     count: int
+    others: list
 
 
 class Schedule:
@@ -67,11 +78,20 @@ class Schedule:
             due = self._built[ends] = self._work_out(tick)
         return due
 
-    def alike_after(self, tick):
-        """Return how many ticks after one have messages, and all of them the same ones."""
-        if self._intervals[:1] != [1]:
-            return 0
-        return min((ticks - tick % ticks - 1 for ticks in self._longer), default=_FAR)
+    def stretch(self, tick, most):
+        """Return the Stretch of at most so many ticks that follow one, None if it has no tick."""
+        if self._intervals[:1] != [1] or most < 1:
+            return None
+        due = self.due(tick + 1)
+        # What is no row comes at longer intervals than rows do, if these come at each tick.
+        alike = min((ticks - tick % ticks for ticks in self._longer), default=_FAR)
+        if alike > most:
+            return Stretch(due, most, [])
+        last = self.due(tick + alike)
+        # Where rows have longer intervals as well, another one may be due then.
+        if last.rows is due.rows:
+            return Stretch(due, alike, last.others)
+        return Stretch(due, alike - 1, []) if alike > 1 else None
 
     def _work_out(self, tick):
         due = [(channel, publisher) for channel, publisher, ticks in self.wanted
@@ -81,7 +101,7 @@ class Schedule:
         heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
                  if publisher is not None]
         others = [(channel, publisher) for channel, publisher in due if channel.row is None]
-        return Due(rows, self._sending.of(heard), others, len(due))
+        return Due(rows, self._sending.of(heard), others)
 
     def due_between(self, first, last):
         """Return how many messages are due at the ticks first + 1 to last, wanted or not."""

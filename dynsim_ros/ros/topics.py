@@ -87,17 +87,31 @@ class Topics:
         if due.rows.numbers:
             self.rows.fill(simulator.instant(), stamp_ns, due.rows)
             due.send()
-        others, snapshot = {}, simulator.snapshot() if due.others else None
-        for channel, publisher in due.others:
-            others[channel.topic] = data = channel.encode(snapshot, stamp_ns)
+        self._count(simulator.tick, 1, len(due.rows.numbers) + len(due.others))
+        return due.rows, self._publish_others(due.others, simulator, stamp_ns)
+
+    def were_published(self, stretch, done, simulator, stamp_ns):
+        """
+        Take note that the rows of the first so many ticks of a Stretch were published.
+
+        Publishes what else is due at the last tick of all, which a Simulator stands at then;
+        returns {topic: CDR bytes} of that.
+        """
+        others = stretch.others if done == stretch.count else []
+        self._count(simulator.tick, done, done * len(stretch.due.rows.numbers) + len(others))
+        return self._publish_others(others, simulator, stamp_ns)
+
+    def _publish_others(self, others, simulator, stamp_ns):
+        """Publish what is no row; return {topic: CDR bytes}."""
+        messages, snapshot = {}, simulator.snapshot() if others else None
+        for channel, publisher in others:
+            messages[channel.topic] = data = channel.encode(snapshot, stamp_ns)
             if publisher is not None:
                 publisher.publish(data)
-        self.were_published(due, simulator.tick, 1)
-        return due.rows, others
+        return messages
 
-    def were_published(self, due, last, ticks):
-        """Count the messages of so many ticks up to the last one; a Due has those of each."""
-        built = due.count * ticks
+    def _count(self, last, ticks, built):
+        """Count so many messages that were built of so many ticks up to the last one."""
         self.built += built
         self.skipped += self._schedule.due_between(last - ticks, last) - built
 

@@ -25,19 +25,19 @@ import pytest
 from ros_client import Client, stamps
 
 SCENE, RATE = load_scene('sphere_on_spring'), 1000.0
-POSE = 'sphere/pose'
+POSE, MARKERS = 'sphere/pose', 'markers'
 
 
 class Bench:
-    """A run at the end of its first step, and what lets it burst."""
+    """A run at the end of its first step, and what lets it burst; with_others: also markers."""
 
-    def __init__(self, node):
+    def __init__(self, node, with_others=False):
         simulator = Simulator(SCENE, rate=RATE)
         simulator.prepare()
         prepare_sending()
         prepare_bursts()
         self.channels = [channel for channel in scene_channels(simulator.scene, simulator.layout)
-                         if channel.row is not None]
+                         if channel.row is not None or with_others and channel.topic == MARKERS]
         options = {name: own.default for name, own in OWN.items()}
         topics = Topics(node, self.channels,
                         TickRows(self.channels, simulator.layout, reserve=MOST_AHEAD),
@@ -94,6 +94,31 @@ def test_the_messages_are_those_of_single_ticks(bench):
         assert [client.heard[channel.topic][k] for channel in bench.channels] == [
             rows.message(i) for i in range(len(bench.channels))]
     assert run.simulator.memory()['state'] == single.memory()['state']
+
+
+def test_what_comes_less_often_comes_with_the_last_tick(node_here):
+    bench, client = Bench(node_here, with_others=True), Client()
+    simulator, markers = bench.run.simulator, bench.channels[-1]
+    assert markers.topic == MARKERS and markers.every(1_000_000) == 40
+    try:
+        client.listen({MARKERS: markers.type_name})
+        publisher = bench.run.topics._publishers[-1]
+        client.wait(publisher.get_subscription_count)
+        first, ends = simulator.tick, []
+        while simulator.tick < 100:
+            bench.go_on()
+            ends.append(simulator.tick)
+        due = range(40, simulator.tick + 1, 40)
+        client.wait(lambda: len(client.heard[MARKERS]) == len(due))
+    finally:
+        client.close()
+    assert set(due) <= set(ends)
+    rows, ticks = len(bench.channels) - 1, simulator.tick - first
+    assert (bench.run.topics.built, bench.run.topics.skipped) == (rows * ticks + len(due), 0)
+    for tick, message in zip(due, client.heard[MARKERS]):
+        single = Simulator(SCENE, rate=RATE)
+        single.advance_ticks(tick)
+        assert message == markers.encode(single.snapshot(), single.time_ns)
 
 
 def test_the_step_that_the_next_tick_needs_is_taken_before_that_is_due(bench):
