@@ -21,7 +21,7 @@ class FixedSteps:
 
     def __init__(self, advance, step_ns, model, drive, size, springs):
         self._memory = new_memory(size, springs)
-        self._step = step_ns
+        self.step_ns = step_ns
         self._model, self._drive = model, drive
         self._advance = entry(advance, model, drive, 0, 0, 0, np.zeros(size), self._memory)
         self.removed = 0.0
@@ -34,11 +34,11 @@ class FixedSteps:
 
     def state_at(self, time_ns, limit_ns=None):
         """Return the state at an instant that is not before the last one asked for."""
-        steps, rest = divmod(time_ns - self._grid, self._step)
+        steps, rest = divmod(time_ns - self._grid, self.step_ns)
         self.removed += self._advance(self._model, self._drive, self._grid - self._origin,
-                                      self._step, steps, self._state, self._memory)
+                                      self.step_ns, steps, self._state, self._memory)
         self.steps += steps
-        self._grid += steps * self._step
+        self._grid += steps * self.step_ns
         state = self._state.copy()
         if rest:
             self._advance(self._model, self._drive, self._grid - self._origin, rest, 1, state,

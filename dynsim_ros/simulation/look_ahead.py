@@ -1,10 +1,11 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Up to which instant the states of a motion are known without another step.
+How far ahead the states of a motion can be had at little cost.
 
 A step of a method that chooses its steps is often as long as many ticks. Their states all come
-out of its polynomial: in one go they cost little more than one of them alone.
+out of its polynomial: in one go they cost little more than one of them alone. Steps of fixed
+length are as cheap as that: many can be taken at once, and again where they were too many.
 """
 
 from functools import singledispatch
@@ -14,6 +15,17 @@ from ..integrators.adaptive import BASE, END, STEP
 from ..integrators.adaptive_steps import AdaptiveSteps, FAR
 from ..integrators.auto_motion import AutoMotion
 from ..integrators.auto_steps import AutoSteps
+from ..integrators.fixed_steps import FixedSteps
+
+# So many steps of fixed length are taken ahead at most, and so many ticks.
+_MOST_STEPS = 64
+
+
+def ticks_ahead(steps, tick_ns):
+    """Return over how many ticks what `new_steps` returned is to step where none is known."""
+    if not isinstance(steps, FixedSteps):
+        return 1
+    return min(max(_MOST_STEPS * steps.step_ns // tick_ns, 1), _MOST_STEPS)
 
 
 @singledispatch

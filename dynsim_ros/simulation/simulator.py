@@ -12,7 +12,7 @@ from .anchors import Anchors
 from .changes import changed
 from .commands import checked, CommandError, MoveAnchor, PlaceBody, PushBody, SetValues
 from .layout import Layout
-from .look_ahead import known_until
+from .look_ahead import known_until, ticks_ahead
 from .rows.kernel import Instants, prepare_rows
 from .settings import SECOND, SETTING_NAMES, Settings
 from .snapshot import Snapshot
@@ -92,9 +92,13 @@ class Simulator:
     def _take_back(self):
         """Undo steps that no tick has needed yet."""
         if self._way_back is not None:
-            go_back, self._begun_in, self._is_begun = self._way_back
+            go_back, self._begun_in, self._is_begun, _ = self._way_back
             go_back()
-            self._way_back, self._ahead = None, ()
+            needed, tick_ns = self._past, self.settings.tick_ns
+            if needed:
+                self._steps.fill(self.time_ns - (needed - 1) * tick_ns, tick_ns,
+                                 np.empty((needed, self.layout.size)))
+            self._way_back, self._ahead, self._past = None, (), 0
 
     def _begin_steps(self):
         """Let the integration begin at the present instant, under what is in force."""
@@ -281,21 +285,28 @@ class Simulator:
 
         What changes the motion before that tick, or looks at the steps, has them taken back.
         """
-        known = self.known_ahead()
+        known, tick_ns = self.known_ahead(), self.settings.tick_ns
         if known or self.failure or self._steps is None or self._count_even(1) < 1:
             return known
+        several = ticks_ahead(self._steps, tick_ns) if self._is_begun else 1
+        # Fewer if the motion diverges before the last one.
+        return self._step_over(self._count_even(several)) or self._step_over(1)
+
+    def _step_over(self, ticks):
+        """Take the steps that some ticks need; return as step_ahead."""
         self._forget_ahead()
-        self._way_back = way_back(self._steps), self._begun_in, self._is_begun
-        state, tick_ns = np.empty((1, self.layout.size)), self.settings.tick_ns
+        self._way_back = way_back(self._steps), self._begun_in, self._is_begun, ticks
+        states, tick_ns = np.empty((ticks, self.layout.size)), self.settings.tick_ns
         if not self._is_begun:
             self._begin_steps()
         try:
-            self._steps.fill(self.time_ns + tick_ns, tick_ns, state, self._next_change())
+            self._steps.fill(self.time_ns + tick_ns, tick_ns, states, self._next_change())
         except IntegrationError:
-            state[:] = np.nan  # the tick itself will say so
-        if _is_finite(state[0]):
-            self._ahead = state
-            self._look_ahead()
+            states[:] = np.nan  # the tick itself will say so
+        if _is_finite(states.ravel()):
+            self._ahead = states
+            if ticks == 1:
+                self._look_ahead()
         else:
             self._take_back()
         return len(self._ahead)
@@ -313,7 +324,8 @@ class Simulator:
     def take(self, count):
         """Advance by some ticks, at least one, whose states are known."""
         self._past += count
-        self._way_back = None
+        if self._way_back is not None and self._past >= self._way_back[-1]:
+            self._way_back = None
         self._state = self._ahead[self._past - 1]
         self.time_ns += count * self.settings.tick_ns
         self.tick += count

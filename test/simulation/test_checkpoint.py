@@ -157,7 +157,7 @@ def test_the_hash_tells_every_part_of_a_state_from_every_other():
 def test_what_steps_keep_is_saved_or_known():
     """A new attribute of what integrates has to be saved, or to be known as not needed."""
     known = {
-        'FixedSteps': {'_memory', '_step', '_model', '_drive', '_advance', 'removed', 'steps',
+        'FixedSteps': {'_memory', 'step_ns', '_model', '_drive', '_advance', 'removed', 'steps',
                        '_origin', '_grid', '_state'},
         'AdaptiveSteps': {'method', 'tolerance', 'watch', 'calm', '_arguments', 'clock',
                           'counts', '_kept', 'states', 'end', '_dense', 'origin', 'nowhere',

@@ -61,6 +61,16 @@ def test_every_method(method):
                 == memories('sphere_on_spring', False, **settings))
 
 
+def test_many_steps_of_fixed_length_are_taken_at_once():
+    simulator = Simulator(load_scene('sphere_on_spring'), rate=1000.0, integrator='rk4')
+    simulator.advance_tick()
+    assert simulator.step_ahead() == 64
+    simulator.take(10)
+    assert simulator.step_ahead() == 54
+    # Who looks finds those alone that ticks have needed.
+    assert simulator.counts == (11, 0)
+
+
 def test_a_method_that_goes_over_to_the_stiff_one_and_back():
     found = []
     with nothing_compiled():
