@@ -69,7 +69,7 @@ def mcap_writer(messages, folder):
 
 def measure(rounds):
     """
-    Return microseconds a message, each the median of some rounds, and how many topics there are.
+    Return microseconds a message of each round, how many topics and messages a second there are.
 
     'simulate': stepping, building and recording together; 'recorded': the same less stepping;
     'mcap.Writer': writing alone.
@@ -85,7 +85,8 @@ def measure(rounds):
             recorded.append(1e6 * (long - short - stepping) / more)
             peer.append(1e6 * mcap_writer(messages, folder) / len(messages))
     return {'simulate': ours, 'recorded': recorded, 'mcap.Writer': peer,
-            'topics': len({topic for topic, *_ in messages})}
+            'topics': len({topic for topic, *_ in messages}),
+            'messages a second': more / (DURATIONS[1] - DURATIONS[0])}
 
 
 def summary_count(path):

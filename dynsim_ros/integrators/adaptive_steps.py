@@ -73,7 +73,8 @@ class Walk:
         """Return the state at an instant; a step that has gone past it is taken back to it."""
         usual = self.current.take_back(time_ns)
         state = self.end_at(time_ns)
-        self.current.clock[NEXT] = max(usual, self.current.clock[NEXT])
+        clock = self.current.clock
+        clock[NEXT] = max(usual, clock.item(NEXT))
         return state
 
 
@@ -150,12 +151,14 @@ class AdaptiveSteps(Walk):
 
     def take_back(self, time_ns):
         """Undo the last step if it went past an instant; return the usual length of a step."""
-        behind = time_ns - self.origin - int(self.clock[BASE]) * _SECOND
-        if behind * 1e-9 < self.clock[END] and self.clock[STEP] > 0.0:
-            self.clock[END] -= self.clock[STEP]
+        clock = self.clock
+        end, step = clock.item(END), clock.item(STEP)
+        behind = time_ns - self.origin - int(clock.item(BASE)) * _SECOND
+        if behind * 1e-9 < end and step > 0.0:
+            clock[END] = end - step
             self.states[1], self.states[3] = self.states[0], self.states[2]
-            self.clock[STEP] = 0.0
-        return self.clock[NEXT]
+            clock[STEP] = 0.0
+        return clock.item(NEXT)
 
     def check(self, status, budget):
         """Raise IntegrationError unless a run ended well."""

@@ -99,16 +99,20 @@ class Bursts:
         self._instant[2] = self._instant.ctypes.data
         self._tick_on = None
 
-    def go(self, at_once=False):
-        """
-        Run ticks in this way before anything else is to be done; return how many could be.
+    @property
+    def period(self):
+        """Return how long a tick takes [ns], None where that is too long or not known."""
+        pacer = self._pacer
+        if not (pacer.is_steady and pacer.factor > 0.0):
+            return None
+        period = self._run.simulator.settings.tick_ns / pacer.factor
+        return period if period <= _LONGEST_TICK else None
 
-        at_once: let the first tick wait for the deadline of the one before it, not for its own.
-        """
-        simulator, pacer = self._run.simulator, self._pacer
-        period = simulator.settings.tick_ns / pacer.factor if pacer.factor > 0.0 else 0.0
-        if (self._mailbox.alarm.functions is None or not 0.0 < period <= _LONGEST_TICK
-                or not pacer.is_steady or self._is_too_late(period)):
+    def go(self):
+        """Run ticks in this way before anything else is to be done; return how many could be."""
+        period = self.period
+        if (period is None or self._mailbox.alarm.functions is None
+                or self._is_too_late(period)):
             return 0
         most = self._most
         if self._run.bag is not None:
@@ -117,14 +121,14 @@ class Bursts:
         if (stretch is None or not isinstance(stretch.due.send, Together)
                 or not self._mailbox.is_quiet()):
             return 0
-        return self._tick(stretch, period, at_once)
+        return self._tick(stretch, period)
 
     def _is_too_late(self, period):
         """Tell whether the next tick is, one that comes after so long [ns]."""
         pacer = self._pacer
         return pacer.now() - pacer.deadline(self._run.simulator.time_ns) > period + _PATIENCE
 
-    def _tick(self, stretch, period, at_once):
+    def _tick(self, stretch, period):
         """Run the ticks of a Stretch, as far as nothing ends it; return how many were run."""
         run, pacer, count = self._run, self._pacer, stretch.count
         first, tick_ns = run.simulator.time_ns, run.simulator.settings.tick_ns
@@ -132,8 +136,6 @@ class Bursts:
         run.build_ahead(stretch)
         deadlines = np.array([pacer.deadline(first + k * tick_ns) for k in range(1, count + 1)])
         built = time.monotonic_ns()
-        if at_once:
-            deadlines[0] = min(deadlines[0], max(built, pacer.deadline(first)))
         self._spent[0] = 0
         if self._tick_on is None:
             self._tick_on = prepare_bursts()

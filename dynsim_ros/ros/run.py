@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 
+from .schedule import Stretch
 from ..bag.bag_files import Limits
 from ..bag.bag_names import new_path
 from ..bag.run_bag import RunBag
@@ -144,7 +145,7 @@ class Run:
         count = 0 if stretch is None else simulator.step_ahead()
         if count < 1:
             return None
-        return stretch if count >= stretch.count else stretch._replace(count=count, others=[])
+        return stretch if count >= stretch.count else Stretch(stretch.due, count, [])
 
     def build_ahead(self, stretch):
         """Build the rows of a Stretch that stretch_ahead returned."""

@@ -23,10 +23,11 @@ class Ticker:
     Runs the ticks that are due, and at tick boundaries what the mailbox holds.
 
     A command takes effect at the last tick boundary before it arrived, however late the thread
-    is; quick ticks show it at once, see Bursts.go. What nobody waits for is not run tick by tick,
-    but in one go when somebody asks; the thread sleeps meanwhile. is_ready: function that tells
-    whether the clock runs. error: what the thread failed of, None as long as it has not. options:
-    dict of the node's own parameters; warn: takes a line about what of them is not granted.
+    is. Where ticks are quick the next one, which shows it, comes at once, up to a tick early. What
+    nobody waits for is not run tick by tick, but in one go when somebody asks; the thread sleeps
+    meanwhile. is_ready: function that tells whether the clock runs. error: what the thread failed
+    of, None as long as it has not. options: dict of the node's own parameters; warn: takes a line
+    about what of them is not granted.
     lateness: Histogram of how long after their deadlines ticks began [ns].
     """
 
@@ -40,8 +41,6 @@ class Ticker:
         self._bursts = Bursts(run, pacer, self.mailbox, self.lateness, self._spin)
         self._ticks_in_one_go = 1
         self._is_ending = False
-        # Whether this turn has carried out what was told, which the next tick is to show.
-        self._is_commanded = False
         self._thread = threading.Thread(target=self._work, name='ticks', daemon=True)
 
     def begin(self):
@@ -62,9 +61,9 @@ class Ticker:
             self._ask_for_real_time()
             while not self._is_ending:
                 self.mailbox.hush()
-                self._is_commanded = False
-                self._carry_out()
-                if not self._bursts.go(at_once=self._is_commanded):
+                if self._carry_out():
+                    self._show()
+                if not self._bursts.go():
                     seconds = self._turn()
                     if seconds > self._spin:
                         self.mailbox.wait(seconds - self._spin)
@@ -103,11 +102,15 @@ class Ticker:
         return not (self._run.paused or self._run.finished) and self._is_ready()
 
     def _carry_out(self):
-        """Do what the mailbox holds, each at the tick boundary before it arrived."""
+        """
+        Do what the mailbox holds, each at the tick boundary before it arrived.
+
+        Returns whether anything of it was a command, which the next tick is to show.
+        """
         mailbox, pacer = self.mailbox, self._pacer
-        arrival = mailbox.arrival()
+        arrival, is_commanded = mailbox.arrival(), False
         if arrival is None:
-            return
+            return False
         limit = time.monotonic_ns() + LONGEST_LAG
         while arrival is not None:
             if self._goes_on():
@@ -118,8 +121,17 @@ class Ticker:
                     self._advance(due, wanted, limit)
             letter = mailbox.next_letter()
             letter.carry_out()
-            self._is_commanded |= not letter.is_awaited
+            is_commanded |= not letter.is_awaited
             arrival = mailbox.arrival()
+        return is_commanded
+
+    def _show(self):
+        """Run the tick that shows what was commanded, if ticks are quick and it is the next."""
+        run, pacer = self._run, self._pacer
+        if (self._bursts.period is not None and self._goes_on() and run.ticks_to_wanted() == 1
+                and pacer.now() >= pacer.deadline(run.simulator.time_ns)):
+            run.advance(1, True)
+            pacer.is_up_to_date()
 
     def _advance(self, due, wanted, limit):
         """

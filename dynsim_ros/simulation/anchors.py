@@ -48,9 +48,10 @@ class Anchors:
 
     def rebase(self, time_ns):
         """Let `since` be an instant before the next change."""
-        # In place: the kernels hold on to this array.
-        self.motion[:] = self.motion_at(time_ns)
-        self.since = time_ns
+        if time_ns != self.since:
+            # In place: the kernels hold on to this array.
+            self.motion[:] = self.motion_at(time_ns)
+            self.since = time_ns
 
     def next_change(self):
         """Return the instant at which the next moving anchor arrives [ns], or None."""
