@@ -2,11 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Handles by which anchors are dragged, looked at and taken hold of as RViz does."""
 
+import time
+
 from geometry_msgs.msg import Point, PointStamped
 import pytest
 from rviz import RViz
 from scene_topics import DIAGNOSTICS, POSE, positions
 from visualization_msgs.msg import InteractiveMarkerControl
+from visualization_msgs.srv import GetInteractiveMarkers
+
+# At L = 0.5 m + 9.81 N / (100 N/m) below its anchor.
+STILL = """
+gravity: 9.81
+anchors: {hand: {position: [0, 0, 2]}}
+bodies: {mass: {shape: particle, mass: 1, position: [0, 0, 1.4019]}}
+springs: {spring: {from: hand, to: mass, stiffness: 100, damping: 1, natural_length: 0.5}}
+"""
 
 
 @pytest.fixture(scope='module')
@@ -106,6 +117,39 @@ def test_no_such_handle(client, rviz):
 def test_they_go_with_the_node(client, node):
     node.stop()
     client.wait(lambda: not client.node.count_publishers(client.full('handles/update')))
+
+
+def test_whom_it_touches_wakes(start, connect, tmp_path):
+    """A scene at rest takes no step, until somebody drags what it hangs from."""
+    scene = tmp_path / 'still.yaml'
+    scene.write_text(STILL)
+    client = connect(start('-p', f'scene:={scene}', '-r', '__ns:=/still', name='/still/dynsim'))
+    client.listen({'mass/pose': POSE})
+    rviz = RViz(client)
+    assert len({tuple(place) for place in positions(client.more('mass/pose', 20))}) == 1
+    rviz.drag('hand', (0.0, 0.0, 2.5))
+    client.wait(lambda: positions([client.last('mass/pose')])[0][2] > 1.5)
+
+
+def test_handles_follow_seldom_while_nobody_looks(start, connect):
+    client = connect(start('-p', 'integrator:=rk4', '-r', '__ns:=/unseen', name='/unseen/dynsim'))
+
+    def number():
+        return client.call('handles/get_interactive_markers',
+                           GetInteractiveMarkers).sequence_number
+
+    client.listen({'hand/pose': POSE})
+    client.set_group({'hand.velocity': [0.1, 0.0, 0.0]})
+    begin, before = time.monotonic(), number()
+    client.more('hand/pose', 300)
+    seconds, told = time.monotonic() - begin, number() - before
+    # Once a second, not ten times.
+    assert 1 <= told <= seconds + 1.0
+    # What is told then is where the anchor is, to within that second.
+    rviz = RViz(client)
+    client.wait(lambda: abs(rviz.place('hand')[0] - hand(client)[0]) < 0.02)
+    seen = rviz.place('hand')
+    client.wait(lambda: rviz.place('hand') != seen)
 
 
 def test_a_handle_for_each_anchor_by_other_names(start, connect):

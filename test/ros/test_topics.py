@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names, types, frames, stamps, bytes and quality of service of what a node publishes."""
 
+from dynsim_ros.scene import load_scene
 import numpy as np
 import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
@@ -24,9 +25,10 @@ from scene_topics import (
 from std_srvs.srv import SetBool
 
 TICK = 10_000_000
-# the last but one where there is an anchor, the last where tf2_msgs is installed
-OTHERS_HAVE_THEM = {'/rosout', '/parameter_events', '/diagnostics', 'handles/update', '/tf'}
+# the last where tf2_msgs is installed
+OTHERS_HAVE_THEM = {'/rosout', '/parameter_events', '/diagnostics', '/tf'}
 OF_EVERY_SCENE = {'epoch': EPOCH, 'state_hash': HASH}
+OF_ANCHORS = {'handles/update': 'visualization_msgs/msg/InteractiveMarkerUpdate'}
 
 
 @pytest.fixture(scope='module')
@@ -54,13 +56,14 @@ def offered(client, name):
 
 def test_topics_and_types(node, client):
     assert {topic: kind for topic, kind in offered(client, node.name).items()
-            if topic not in OTHERS_HAVE_THEM} == {**SPHERE, **OF_EVERY_SCENE}
+            if topic not in OTHERS_HAVE_THEM} == {**SPHERE, **OF_EVERY_SCENE, **OF_ANCHORS}
 
 
 def test_commands_and_services(client):
     of_node = client.node.get_subscriber_names_and_types_by_node('dynsim', '/')
-    assert {topic: kind for topic, kind in of_node if '/handles/' not in topic} == {
+    assert dict(of_node) == {
         '/dynsim/hand/command': ['geometry_msgs/msg/PointStamped'],
+        '/dynsim/handles/feedback': ['visualization_msgs/msg/InteractiveMarkerFeedback'],
         '/dynsim/sphere/wrench_command': ['geometry_msgs/msg/WrenchStamped'],
         '/dynsim/parameter_command': ['rcl_interfaces/msg/Parameter']}
     services = dict(client.node.get_service_names_and_types_by_node('dynsim', '/'))
@@ -155,7 +158,9 @@ def test_only_what_a_scene_has(others, client, scene):
     client.wait(lambda: 'epoch' in offered(client, name))
     client.wait(client.node.create_client(SetBool, f'{name}/pause').service_is_ready)
     assert {topic: kind for topic, kind in offered(client, name).items()
-            if topic not in OTHERS_HAVE_THEM} == {**OTHERS[scene], **OF_EVERY_SCENE}
+            if topic not in OTHERS_HAVE_THEM} == {
+                **OTHERS[scene], **OF_EVERY_SCENE,
+                **(OF_ANCHORS if load_scene(scene).anchors else {})}
 
 
 def test_a_particle_knows_no_torque(others, connect):
