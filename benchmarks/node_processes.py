@@ -77,6 +77,11 @@ class Node:
         time.sleep(seconds)
         return (self.cpu() - used) / (time.perf_counter() - start)
 
+    def kill(self):
+        """End it without warning."""
+        self._process.kill()
+        self._process.wait()
+
     def stop(self):
         """End it as Ctrl-C does."""
         self._process.send_signal(signal.SIGINT)
