@@ -60,8 +60,20 @@ class FixedSteps:
 
     def fill(self, first_ns, period_ns, states, limit_ns=None):
         """Write the states at instants that are evenly spaced to states: (n, size)."""
-        for i, state in enumerate(states):
-            state[:] = self.state_at(first_ns + i * period_ns)
+        steps, rest = divmod(period_ns, self.step_ns)
+        if rest or steps == 0 or (first_ns - self._grid) % self.step_ns:
+            for i, state in enumerate(states):
+                state[:] = self.state_at(first_ns + i * period_ns)
+            return
+        states[0] = self.state_at(first_ns)
+        # The others lie on the grid.
+        advance, now = self._advance, self._state
+        for i in range(1, len(states)):
+            self.removed += advance(self._model, self._drive, self._grid - self._origin,
+                                    self.step_ns, steps, now, self._memory)
+            self._grid += period_ns
+            states[i] = now
+        self.steps += steps * (len(states) - 1)
 
     # A step that is cut short is the shorter step that state_at takes.
     cut = end_at = state_at

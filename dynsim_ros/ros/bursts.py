@@ -131,10 +131,9 @@ class Bursts:
     def _tick(self, stretch, period):
         """Run the ticks of a Stretch, as far as nothing ends it; return how many were run."""
         run, pacer, count = self._run, self._pacer, stretch.count
-        first, tick_ns = run.simulator.time_ns, run.simulator.settings.tick_ns
         begin = time.monotonic_ns()
         run.build_ahead(stretch)
-        deadlines = np.array([pacer.deadline(first + k * tick_ns) for k in range(1, count + 1)])
+        deadlines = pacer.deadlines(run.simulator.time_ns, run.simulator.settings.tick_ns, count)
         built = time.monotonic_ns()
         self._spent[0] = 0
         if self._tick_on is None:
@@ -146,9 +145,9 @@ class Bursts:
         if done:
             run.was_published(stretch, done)
             pacer.is_up_to_date()
-        for late in self._late[:done].tolist():
-            self._lateness.add(late)
-            pacer.late += late >= period
+            late = self._late[:done]
+            self._lateness.add_all(late)
+            pacer.late += int(np.count_nonzero(late >= period))
         run.work['publish'] += built - begin + int(self._spent[0])
         return done
 

@@ -5,6 +5,8 @@
 import math
 import time
 
+import numpy as np
+
 SECOND = 1_000_000_000
 # Ticks that are late by more than this much real time are given up and counted as missed.
 LONGEST_LAG = SECOND // 5
@@ -54,6 +56,12 @@ class Pacer:
         """Return the time of the clock at which a simulated time is due, at factors above 0."""
         real = min((time_ns - self._time_start) / self.factor, _LONGEST)
         return self._clock_start + math.ceil(real)
+
+    def deadlines(self, time_ns, tick_ns, count):
+        """Return those of so many ticks that follow a simulated time: (count,) int64."""
+        times = time_ns - self._time_start + tick_ns * np.arange(1, count + 1)
+        real = np.minimum(times / self.factor, _LONGEST)
+        return self._clock_start + np.ceil(real).astype(np.int64)
 
     def due(self, time_ns, tick_ns, wanted):
         """

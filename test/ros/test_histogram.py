@@ -23,4 +23,17 @@ def test_nothing_and_very_much():
     assert histogram.percentile(50) is None
     for value in (-5, 0, 2 ** 70):
         histogram.add(value)
-    assert (histogram.percentile(60), histogram.longest) == (0, 2 ** 70)
+    assert (histogram.percentile(60), histogram.longest) == (0, 2 ** 63 - 1)
+
+
+def test_many_at_once():
+    values = np.random.default_rng(2).lognormal(10.0, 3.0, 1000).astype(np.int64)
+    histograms = Histogram(), Histogram()
+    for value in values.tolist():
+        histograms[0].add(value)
+    histograms[1].add_all(values)
+    for percent in range(1, 101):
+        exact = np.percentile(values, percent, method='inverted_cdf')
+        one, all_ = (histogram.percentile(percent) for histogram in histograms)
+        assert one == all_ and exact <= all_ <= exact * 1.13 + 1
+    assert histograms[1].longest == values.max()

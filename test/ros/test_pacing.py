@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which ticks are due by a clock, and which are given up."""
 
+from fractions import Fraction
+import math
+
 from dynsim_ros.ros.pacing import LONGEST_LAG, Pacer, SECOND
+import numpy as np
 import pytest
 
 TICK = SECOND // 100
@@ -21,6 +25,18 @@ class HandClock:
 @pytest.fixture
 def clock():
     return HandClock()
+
+
+@pytest.mark.parametrize('factor', [1.0, 0.5, 3.0, 1000.0, 1e-300])
+def test_deadlines(clock, factor):
+    pacer, first = Pacer(factor, clock), 7 * TICK + 3
+    exact = [clock.time + math.ceil((first + k * TICK) / Fraction(factor)) for k in (1, 2, 3, 4)]
+    found = pacer.deadlines(first, TICK, 4)
+    assert found.dtype == np.int64
+    for theirs, one, ours in zip(exact, [pacer.deadline(first + k * TICK) for k in (1, 2, 3, 4)],
+                                 found.tolist()):
+        # Beyond a thousand million seconds one deadline is as good as another.
+        assert one == ours and (abs(ours - theirs) <= 1 or min(ours, theirs) > 10 ** 18)
 
 
 @pytest.mark.parametrize('by_command', [False, True])
