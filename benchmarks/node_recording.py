@@ -15,7 +15,7 @@ from mcap.writer import CompressionType, Writer
 
 SCENE, RATE, COMPRESSION = 'sphere_on_spring', 1000, 'zstd'
 # Simulated time of the shorter and the longer run [s]: their difference is free of the start.
-DURATIONS = (10, 60)
+DURATIONS = (10, 310)
 
 
 def simulate(folder, seconds):

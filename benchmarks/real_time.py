@@ -66,10 +66,14 @@ def main():
     for name in KINDS:
         idle, loaded = ([median(part) for part in zip(*found[name, is_busy])]
                         for is_busy in (False, True))
-        text += f'| {name} | ' + ' | '.join(f'{value:.3g}' for value in [*idle, *loaded[:3]])
-        text += ' |\n'
+        text += f'| {name} | ' + ' | '.join(map(shown, [*idle, *loaded[:3]])) + ' |\n'
     print(text, end='')
     Path(__file__).with_suffix('.md').write_text(text, encoding='utf-8')
+
+
+def shown(value):
+    """Return a number with three digits, or all that it has before the point."""
+    return f'{value:.0f}' if value >= 100 else f'{value:.3g}'
 
 
 def measured(kind, parameters, seconds):
