@@ -38,7 +38,7 @@ help:
 	@echo "make test    run the test suite            ARGS='-k bag -x' hands options to pytest"
 	@echo 'make test-browser   only the tests that open the viewer in a Chromium, which has to be there'
 	@echo 'make test-readers   only the tests that open bags with Rerun and with the readers of Foxglove (needs npm)'
-	@echo 'make bench   measure run time against error (half an hour); tables and plot go to benchmarks/'
+	@echo 'make bench   measure run time against error (forty minutes with ARGS=--rounds=8); tables and plot go to benchmarks/'
 	@echo '               ARGS="--scenes S2 --peers heyoka --output /tmp"'
 	@echo 'make bench-quick   the main scenes against the fastest engines, in less than three minutes'
 	@echo 'make bench-stability   every method and the engines over twelve decades of parameters; to benchmarks/'
