@@ -17,11 +17,11 @@ import subprocess
 import sys
 import time
 
+from node import RATE, SETTLE
 import node_processes
 from node_processes import listening, running
 import tables
 
-RATE, SETTLE = 1000, 1.0
 CPU = float(max(os.sched_getaffinity(0)))
 # What a row says: the kind of node and its parameters.
 KINDS = {

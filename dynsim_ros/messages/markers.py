@@ -39,8 +39,8 @@ class _Markers:
         parts += [_spring(scene, spring, i, scale) for i, spring in enumerate(scene.springs)]
         self._numbers = [numbers for _, numbers in parts]
         first = len(parts) - len(scene.springs)
-        self._pack = Template(MARKERS, {'markers': [marker for marker, _ in parts]}, blocks=[
-            f'markers.{i}.points' for i in range(first, len(parts))]).pack
+        self._pack = Template(MARKERS, {'markers': [marker for marker, _ in parts]}, blocks={
+            f'markers.{i}.points' for i in range(first, len(parts))}).pack
 
     def encode(self, snapshot, stamp_ns):
         """Return the message for a snapshot of the scene."""

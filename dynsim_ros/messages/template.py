@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 import struct
 from typing import NamedTuple
 
@@ -30,11 +30,12 @@ class Template:
     (each has to be given, its length stays), and any numbers. leaves: dotted names of all other
     numbers in wire order, such as 'header.stamp.sec' or 'pose.position.x'; places: {leaf: Place}.
     size: of the message in bytes, with the 4-byte header; content: its bytes, all leaves zero;
-    padding: indices of the bytes that mean nothing. blocks: names of sequences of float64 that are
-    one leaf each, given as bytes.
+    padding: indices of the bytes that mean nothing. blocks: names of sequences of points that are
+    one leaf each, given as the bytes of their float64.
     """
 
-    def __init__(self, type_name: str, fixed: Mapping | None = None, blocks: Sequence[str] = ()):
+    def __init__(self, type_name: str, fixed: Mapping | None = None,
+                 blocks: Collection[str] = frozenset()):
         """Lay the message out; raises ValueError naming the field where it has no fixed size."""
         self.type_name = type_name
         self.places: dict[str, Place] = {}
@@ -57,8 +58,9 @@ class Template:
 
     def _place(self, leaf, start, item, blocks):
         """Take note of a leaf, or that it is the next number of a block."""
-        block = next((name for name in blocks if leaf.startswith(f'{name}.')), None)
-        if block is None:
+        # As in 'markers.2.points.66.x'.
+        block, *_ = leaf.rsplit('.', 2)
+        if block not in blocks:
             self.places[leaf] = Place(start, item)
             return
         assert item == 'd', f'{leaf} is no float64'

@@ -40,9 +40,9 @@ class Histogram:
 
     def add(self, duration):
         """Count one duration: an integer [ns]."""
-        duration = min(max(duration, 0), _LONGEST)
+        duration = max(duration, 0)
         self.longest = max(self.longest, duration)
-        self._counts[place(duration)] += 1
+        self._counts[place(min(duration, _LONGEST))] += 1
 
     def add_all(self, durations):
         """Count durations, one at least, none below 0: (n,) int64."""

@@ -103,12 +103,14 @@ def test_what_is_only_recorded(start, connect):
     client = connect(node)
     client.wait(lambda: node.bags)
     begin, awake = time.monotonic(), times_awake(node)
+    # no event would do: whatever asks the node wakes it
     time.sleep(1.5)
     awake, seconds = times_awake(node) - awake, time.monotonic() - begin
     command = PointStamped()
     for i in range(20):
         command.point.x, command.point.z = 0.01 * i, 2.0
         client.publish('hand/command', command)
+        # between ticks that have passed, not all at one
         time.sleep(0.01)
     tick = int(client.pause().message.split()[3].rstrip(','))
     node.stop()
