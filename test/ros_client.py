@@ -3,6 +3,7 @@
 """A ROS node in the test's own process: listens, commands, calls services of a node."""
 
 from importlib import import_module
+import math
 import time
 
 from rcl_interfaces.srv import (
@@ -19,6 +20,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
+from rclpy.task import Future
 from std_srvs.srv import SetBool, Trigger
 
 DEEP = QoSProfile(depth=20_000)
@@ -93,8 +95,12 @@ class Client:
             self._executor.spin_once(timeout_sec=0.03)
             quiet = quiet + 1 if before == sum(map(len, self.heard.values())) else 0
 
-    def listen(self, topics, qos=DEEP):
-        """Subscribe to {topic: type name} and wait until a publisher of each is found."""
+    def listen(self, topics, qos=DEEP, is_served=True):
+        """
+        Subscribe to {topic: type name} and wait until each is found, also by its publisher.
+
+        is_served: the target serves its parameters.
+        """
         found = []
         for topic, type_name in topics.items():
             self._types[topic] = type_named(type_name)
@@ -103,6 +109,28 @@ class Client:
                 self._types[topic], self.full(topic), self.heard[topic].append, qos, raw=True))
         for subscription in found:
             self.wait(lambda subscription=subscription: subscription.get_publisher_count())
+        if is_served:
+            self._be_found()
+
+    def _be_found(self):
+        """
+        Wait until the target has found all readers of this client.
+
+        A participant tells of its readers one after the other: who can answer a client of a
+        service made now has found what was made before.
+        """
+        client = self.node.create_client(ListParameters, self.full('list_parameters'))
+        self.wait(client.service_is_ready)
+        answers, asked = [], -math.inf
+        while not any(map(Future.done, answers)):
+            # an answer to a reader that is not found within 0.1 s is lost
+            if time.monotonic() > asked + 1.0:
+                answers.append(client.call_async(ListParameters.Request()))
+                asked = time.monotonic()
+            self._check()
+            assert len(answers) < 60, 'nobody answers'
+            self._executor.spin_once(timeout_sec=0.02)
+        self.node.destroy_client(client)
 
     def messages(self, topic):
         """Return what was heard on a topic, as messages."""

@@ -113,7 +113,7 @@ class SimNode(Node):
         return Log(super().get_logger(), self._aside)
 
     def _offer_services(self, is_ending):
-        run, ask, options = self.run, self.ticker.mailbox.ask, self.parameters.own
+        run, ask, options = self.run, self._ask, self.parameters.own
         states = States(run, ask, options, prepare=self._prepare, resumed=self._resume,
                         goes_on=self._begin_anew, follow_up=self._follow_up)
         services = Services(self, run, ask, Stepping(run, is_ending), states, options,
@@ -232,6 +232,11 @@ class SimNode(Node):
         """Begin a new epoch with what the start had, in the run's thread."""
         self.parameters.reset()
         self._begin_anew()
+
+    def _ask(self, question):
+        """Have question() answered by the run's thread; who listens by now hears what it does."""
+        self.audience.look()
+        return self.ticker.mailbox.ask(question)
 
     def _begin_anew(self):
         """Begin a new epoch, whose state is there, in the run's thread."""

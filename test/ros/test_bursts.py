@@ -74,7 +74,8 @@ def bench(node_here):
 def test_the_messages_are_those_of_single_ticks(bench):
     run, client = bench.run, Client()
     try:
-        client.listen({channel.topic: channel.type_name for channel in bench.channels})
+        client.listen({channel.topic: channel.type_name for channel in bench.channels},
+                      is_served=False)
         publishers = run.topics._publishers
         client.wait(lambda: all(publisher.get_subscription_count() for publisher in publishers))
         known, first = run.simulator.known_ahead(), run.simulator.tick
@@ -101,7 +102,7 @@ def test_what_comes_less_often_comes_with_the_last_tick(node_here):
     simulator, markers = bench.run.simulator, bench.channels[-1]
     assert markers.topic == MARKERS and markers.every(1_000_000) == 40
     try:
-        client.listen({MARKERS: markers.type_name})
+        client.listen({MARKERS: markers.type_name}, is_served=False)
         publisher = bench.run.topics._publishers[-1]
         client.wait(publisher.get_subscription_count)
         first, ends = simulator.tick, []

@@ -41,7 +41,8 @@ def test_every_way_sends_what_the_rows_hold(node_here, rows):
     pairs = pairs_of(rows, node_here)
     client = Client()
     try:
-        client.listen({channel.topic: channel.type_name for channel in rows.channels})
+        client.listen({channel.topic: channel.type_name for channel in rows.channels},
+                      is_served=False)
         client.wait(lambda: all(publisher.get_subscription_count() for _, publisher in pairs))
         ways = Sending(rows).of(pairs), Sending(rows, False).of(pairs), OneByOne(rows, pairs)
         assert [type(send) for send in ways] == [Together, Typed, OneByOne]
