@@ -12,16 +12,15 @@ the step of order 14 takes as long as the 21 evaluations of its longest sequence
 sequences, of 2 and 4 substeps, would not shorten that, and are worth less than longer ones.
 """
 
+from .advancing import Advancing
 from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .memory import lane_row
 from ..physics.arms import (arm_of_state, begin_arm, put_arm, restart_arm, step_arm,
                             with_arm)
-from ..physics.fused import fused
 from ..physics.jit import part
 from ..physics.lanes import choose, COUNT, lanes_at, spread
-from ..physics.motion import rates
+from ..physics.motion import put_rates
 from ..physics.reach import put_reach, reach_of_state
-from ..physics.state import counts
 
 SUBSTEPS = (6, 8, 10, 12, 14, 16, 22)
 # Of a lower order, whose weights let a quarter of the rounding through.
@@ -46,19 +45,7 @@ def midpoint(model, drive, size, t, way, h, y, arm, reach, behind, here, state, 
         state[i] = y[i] + here[i]
     put_arm(arm, here, state)
     put_reach(reach, way, here, state)
-    rates(model, drive, t + way, state, f)
-    bodies, rigid = counts(model)
-    step = h + h
-    for i in range(3 * bodies):
-        behind[i] = fused(step, f[i], behind[i])
-    for i in range(3 * bodies, 6 * bodies):
-        behind[i] = fused(step, f[i], behind[i])
-    for i in range(6 * bodies, 6 * bodies + 4 * rigid):
-        behind[i] = fused(step, f[i], behind[i])
-    for i in range(6 * bodies + 4 * rigid, 6 * bodies + 7 * rigid):
-        behind[i] = fused(step, f[i], behind[i])
-    for i in range(6 * bodies + 7 * rigid, size):
-        behind[i] = fused(step, f[i], behind[i])
+    put_rates(model, drive, t + way, state, f, Advancing(h + h, behind))
     step_arm(arm, h, state, behind)
 
 

@@ -24,7 +24,7 @@ from ..physics.cells import lane_cells
 from ..physics.forces import anchor_speed, body_of, group_size, spring_motion
 from ..physics.jit import formula
 from ..physics.lanes import COUNT, spread
-from ..physics.motion import apply_air, apply_gravity, apply_pushes, chosen, matrix_at, member
+from ..physics.motion import chosen, matrix_at, member, put_from_outside
 from ..physics.rotation import quaternion_rate_world, rotation_matrix
 from ..physics.spring_damper import spring_tension
 from ..physics.state import (counts, omega_at, put_quaternion, quaternion,
@@ -99,10 +99,7 @@ def count_other_works(works, bodies, rigid, air, pushes, h, y, f):
     """Add the works of the air and of pushes in a substep, if they are counted."""
     if works is not None:
         work = work_at(bodies, rigid)
-        for i in range(work, work + 4):
-            f[i] = spread(0.0)
-        apply_air(bodies, rigid, air, works, y, f)
-        apply_pushes(bodies, rigid, pushes, works, y, f)
+        put_from_outside(bodies, rigid, None, air, pushes, works, y, f)
         y[work + 1] = y[work + 1] + h * f[work + 1]
         y[work + 3] = y[work + 3] + h * f[work + 3]
 
@@ -131,13 +128,7 @@ def first_of(connections, first):
 def free_accelerations(model, drive, responses, t, y, f):
     """Write the accelerations by all but springs and dampers to f."""
     bodies, rigid = counts(model)
-    for i in range(velocity_at(bodies), quaternion_at(bodies)):
-        f[i] = spread(0.0)
-    for i in range(omega_at(bodies, rigid), work_at(bodies, rigid)):
-        f[i] = spread(0.0)
-    apply_pushes(bodies, rigid, drive.pushes, None, y, f)
-    apply_gravity(bodies, model.weight, f)
-    apply_air(bodies, rigid, model.air, None, y, f)
+    put_from_outside(bodies, rigid, model.weight, model.air, drive.pushes, None, y, f)
     turn_with(model.several, bodies, rigid, model.general_body, model.inertia, y, f)
     for i in range(bodies):
         v = velocity_at(bodies) + 3 * i

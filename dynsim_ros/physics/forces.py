@@ -234,32 +234,61 @@ def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_
 
 
 @formula
-def apply_drag(first, end, drag, air, work, works, y, out):
-    """
-    Add the air's force or torque on every body, and its power, if works are counted.
+def begin_works(works, work, out):
+    """Let the powers begin, if works are counted."""
+    if works is not None:
+        for i in range(work, work + 4):
+            out[i] = -0.0
 
-    first, end: where the (angular) velocities of y lie; air: that of the air, None if it is still.
+
+@formula
+def put_powers(works, work, forces, out):
+    """Write the powers, if works are counted; forces: where they are."""
+    if works is not None:
+        for i in range(work, work + 4):
+            out[i] = forces[i]
+
+
+@formula
+def with_push(pushes, i, works, work, y, force, out):
+    """Return a force or moment (3,) with the commanded one at i, and count its power."""
+    if pushes is not None:
+        push = at(pushes, i)
+        count_push_work(works, work, push, at(y, i), out)
+        return add(force, push)
+    return force
+
+
+@formula
+def count_push_work(works, work, push, velocity, out):
+    """Add the power of a commanded force or torque, if works are counted."""
+    if works is not None:
+        for k in range(3):
+            out[work + 3] = out[work + 3] + push[k] * velocity[k]
+
+
+@formula
+def with_weight(weight, i, force):
+    """Return a force (3,) with the weight of body i."""
+    if weight is not None:
+        return add(force, at(weight[i], 0))
+    return force
+
+
+@formula
+def with_drag(drag, air, i, works, work, y, force, out):
     """
-    for i in range(first, end, 3):
+    Return a force or moment (3,) with the air's, and count its power.
+
+    i: where the (angular) velocity of y lies; air: that of the air, None if it is still.
+    """
+    if drag is not None:
         velocity = at(y, i)
         relative = relative_velocity(velocity, air)
-        accumulate_scaled(out, i, -drag, relative)
         count_air_work(works, work, drag, relative, velocity, out)
-
-
-@formula
-def apply_linear_drag(bodies, rigid, linear_drag, air_velocity, works, y, out):
-    """Add the air's force on every body."""
-    apply_drag(velocity_at(bodies), quaternion_at(bodies), linear_drag, air_velocity,
-               work_at(bodies, rigid), works, y, out)
-
-
-@formula
-def apply_rotational_drag(bodies, rigid, rotational_drag, air_angular_velocity, works, y, out):
-    """Add the air's torque on every rigid body."""
-    work = work_at(bodies, rigid)
-    apply_drag(omega_at(bodies, rigid), work, rotational_drag, air_angular_velocity, work, works,
-               y, out)
+        return (fused(-drag, relative[0], force[0]), fused(-drag, relative[1], force[1]),
+                fused(-drag, relative[2], force[2]))
+    return force
 
 
 @formula

@@ -13,7 +13,6 @@ from .equations_of_motion import moment_of_force
 from .forces import anchor_motion, arm_of, body_of, group_size, particle_motion
 from .jit import formula, kernel
 from .kinematics import attachment_position, attachment_velocity
-from .motion import apply_gravity
 from .spring_damper import damper_force, length_and_direction, length_rate, spring_force
 from .state import counts, omega_at, quaternion_at, velocity_at, work_at
 from .vector import accumulate, at, scale, subtract
@@ -130,6 +129,14 @@ def apply_air(bodies, rigid, air, y, out):
     if air is not None:
         apply_drags(bodies, rigid, air.linear_drag, air.rotational_drag, air.velocity,
                     air.angular_velocity, y, out)
+
+
+@formula
+def apply_gravity(bodies, weight, out):
+    """Add the weights of all bodies."""
+    if weight is not None:
+        for i in range(bodies):
+            accumulate(out, velocity_at(bodies) + 3 * i, at(weight[i], 0))
 
 
 @kernel
