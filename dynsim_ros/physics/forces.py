@@ -276,19 +276,29 @@ def with_weight(weight, i, force):
 
 
 @formula
-def with_drag(drag, air, i, works, work, y, force, out):
-    """
-    Return a force or moment (3,) with the air's, and count its power.
-
-    i: where the (angular) velocity of y lies; air: that of the air, None if it is still.
-    """
-    if drag is not None:
-        velocity = at(y, i)
-        relative = relative_velocity(velocity, air)
-        count_air_work(works, work, drag, relative, velocity, out)
-        return (fused(-drag, relative[0], force[0]), fused(-drag, relative[1], force[1]),
-                fused(-drag, relative[2], force[2]))
+def with_linear_drag(linear_drag, air_velocity, v, works, work, y, force, out):
+    """Return a force (3,) with the air's on a body whose velocity is at v; count its power."""
+    if linear_drag is not None:
+        return with_drag(linear_drag, air_velocity, v, works, work, y, force, out)
     return force
+
+
+@formula
+def with_rotational_drag(rotational_drag, air_angular_velocity, w, works, work, y, moment, out):
+    """Return a moment (3,) with the air's likewise; w: where the angular velocity is."""
+    if rotational_drag is not None:
+        return with_drag(rotational_drag, air_angular_velocity, w, works, work, y, moment, out)
+    return moment
+
+
+@formula
+def with_drag(drag, air, i, works, work, y, force, out):
+    """Return a force or moment with the air's; air: its (angular) velocity, None if still."""
+    velocity = at(y, i)
+    relative = relative_velocity(velocity, air)
+    count_air_work(works, work, drag, relative, velocity, out)
+    return (fused(-drag, relative[0], force[0]), fused(-drag, relative[1], force[1]),
+            fused(-drag, relative[2], force[2]))
 
 
 @formula

@@ -10,7 +10,8 @@ from numba import literal_unroll
 
 from .equations_of_motion import (angular_acceleration, linear_acceleration,
                                   scalar_angular_acceleration)
-from .forces import (apply_springs, begin_works, put_powers, with_drag, with_push, with_weight)
+from .forces import (apply_springs, begin_works, put_powers, with_linear_drag, with_push,
+                     with_rotational_drag, with_weight)
 from .jit import formula
 from .rotation import quaternion_rate_world, rotation_matrix
 from .state import (counts, omega_at, put_quaternion, quaternion, quaternion_at, velocity_at,
@@ -39,7 +40,7 @@ def apply_all_springs(several, connections, bodies, rigid, springs, anchors, mov
 def in_air(air, v, works, work, y, force, out):
     """Return a force (3,) with the air's on a body whose velocity is at v, and count its power."""
     if air is not None:
-        return with_drag(air.linear_drag, air.velocity, v, works, work, y, force, out)
+        return with_linear_drag(air.linear_drag, air.velocity, v, works, work, y, force, out)
     return force
 
 
@@ -47,7 +48,8 @@ def in_air(air, v, works, work, y, force, out):
 def turning_in_air(air, w, works, work, y, moment, out):
     """Return likewise a moment (3,) of one whose angular velocity is at w."""
     if air is not None:
-        return with_drag(air.rotational_drag, air.angular_velocity, w, works, work, y, moment, out)
+        return with_rotational_drag(air.rotational_drag, air.angular_velocity, w, works, work, y,
+                                    moment, out)
     return moment
 
 

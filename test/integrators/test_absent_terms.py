@@ -115,20 +115,26 @@ def test_operations_of_what_comes_from_outside():
     assert operations(EVERYTHING, works=True) == plain + 4 + 9 + 9
 
 
-# What is called for a term, by a method that has the rates, or by a linearly implicit one.
-NAMES = {'linear drag': {'apply_linear_drag'}, 'rotational drag': {'apply_rotational_drag'},
+# What is called for a term, by a method that has the rates, or by a linearly implicit one; behind
+# an arrow where others call it, too.
+NAMES = {'linear drag': {'with_linear_drag > with_drag'},
+         'rotational drag': {'with_rotational_drag > with_drag'},
          'damper': {'damper_tension'}, 'spring': {'spring_ends', 'end_place'},
          'works': {'power'}, 'inertia matrix': {'angular_acceleration', 'rotation_matrix'},
          'orientation': {'quaternion_rate_world', 'turned', 'attachment_arm'}}
 
 
 def called(scene, method, **drive):
-    """Return the names of the package's functions that a step calls."""
+    """Return the names of the package's functions that a step calls, alone and with callers."""
     hand, names = ByHand(scene, method, **drive), set()
 
     def profile(frame, event, _):
         if event == 'call' and 'dynsim_ros' in frame.f_code.co_filename:
-            names.add(frame.f_code.co_name)
+            name, caller = frame.f_code.co_name, frame.f_back
+            # what can be compiled is called by way of this
+            if caller.f_code.co_name == '__call__':
+                caller = caller.f_back
+            names.update({name, f'{caller.f_code.co_name} > {name}'})
     sys.setprofile(profile)
     try:
         hand.run(0.01, 1)
