@@ -49,10 +49,8 @@ from .whirl import constant_of_whirl, reaches, whirl_series, whirled
 from ...physics.jit import plain
 
 # What kernels do not call.
-(cancels, constant_of_whirl, is_along, keeps_axis, least_length, reaches, spring_line, spring_size,
- torque_free_in_full, whirl_series) = map(plain, (
-     cancels, constant_of_whirl, is_along, keeps_axis, least_length, reaches, spring_line,
-     spring_size, torque_free_in_full, whirl_series))
+cancels, is_along, keeps_axis, least_length, reaches, spring_line, spring_size = map(plain, (
+    cancels, is_along, keeps_axis, least_length, reaches, spring_line, spring_size))
 
 __all__ = [
     'SpringLine', 'TorqueFree', 'along_spring', 'cancels', 'centre_of_springs',

@@ -17,7 +17,7 @@ from .spin import free_spin
 from ...physics.elementary import exponential
 from ...physics.jit import formula
 from ...physics.rotation import quaternion_norm, quaternion_product
-from ...physics.state import quaternion
+from ...physics.state import put_quaternion, quaternion
 from ...physics.vector import add, cross, dot, norm, scale, subtract
 
 # The most that |d| / (2 c) may be [rad], and so many terms leave out less than 1e-17 then.
@@ -29,18 +29,25 @@ def reaches(angular_velocity, whirl, decay):
     return norm(subtract(angular_velocity, whirl)) <= 2.0 * decay * _MOST_TURN
 
 
-def whirl_series(angular_velocity, whirl, decay):
-    """Return the TERMS coefficients of F, quaternions (w, x, y, z); arguments as above."""
+@formula
+def whirl_series(angular_velocity, whirl, decay, series):
+    """
+    Write the coefficients of F, quaternions (w, x, y, z), to series: (TERMS, 4).
+
+    angular_velocity, whirl, decay: as above.
+    """
     d = scale(-0.5 / decay, subtract(angular_velocity, whirl))
     axis = scale(1.0 / decay, whirl)
     square = dot(axis, axis)
-    series = [(1.0, 0.0, 0.0, 0.0)]
-    for n in range(1, TERMS):
-        s, *r = quaternion_product((0.0, *d), series[-1])
+    put_quaternion(series[0], 0, (1.0, 0.0, 0.0, 0.0))
+    for k in range(1, TERMS):
+        n = float(k)
+        s, x, y, z = quaternion_product((0.0, d[0], d[1], d[2]), quaternion(series[k - 1], 0))
+        r = (x, y, z)
         # n v + axis x v = r
         v = add(scale(n, subtract(scale(n, r), cross(axis, r))), scale(dot(axis, r), axis))
-        series.append((s / n, *scale(1.0 / (n * (n * n + square)), v)))
-    return series
+        v = scale(1.0 / (n * (n * n + square)), v)
+        put_quaternion(series[k], 0, (s / n, v[0], v[1], v[2]))
 
 
 @formula
@@ -83,12 +90,14 @@ def whirled(t, series, constant, whirl, decay, t_left=0.0):
     return (size * q[0], size * q[1], size * q[2], size * q[3])
 
 
+@formula
 def constant_of_whirl(series, orientation):
-    """Return the quaternion C that gives the orientation at time 0."""
+    """Return the quaternion C (w, x, y, z) that gives the orientation at time 0."""
     w, x, y, z = 0.0, 0.0, 0.0, 0.0
     # the small ones first
-    for a, b, c, d in reversed(series):
+    for k in range(TERMS - 1, -1, -1):
+        a, b, c, d = quaternion(series[k], 0)
         w, x, y, z = w + a, x + b, y + c, z + d
-    constant = quaternion_product((w, -x, -y, -z), orientation)
-    size = quaternion_norm(constant)
-    return tuple(component / size for component in constant)
+    q = quaternion_product((w, -x, -y, -z), orientation)
+    size = quaternion_norm(q)
+    return (q[0] / size, q[1] / size, q[2] / size, q[3] / size)

@@ -18,13 +18,17 @@ import numpy as np
 from .hold import holds_of
 from .imbalance import is_unbalanced
 from ..closed_form import cancels, spring_size
-from ...physics.motion import apply_forces
-from ...physics.rotation import rotate
-from ...physics.vector import add, dot, norm, scale, subtract
+from ...physics import motion, rotation, vector
+from ...physics.jit import plain
 
+_apply_forces = plain(motion.apply_forces)
+_rotate = plain(rotation.rotate)
+_add, _dot, _norm, _scale, _subtract = map(plain, (
+    vector.add, vector.dot, vector.norm, vector.scale, vector.subtract))
 # An eigenvalue that is above minus this, relative to the stiffnesses, counts as not negative: in
 # an hour nothing visible comes of rounding there.
 _NEUTRAL = 1e-9
+_EYE = np.eye(3)
 
 
 class _Body:
@@ -36,7 +40,7 @@ class _Body:
 
     def arm(self, offset):
         """Return the vector from the centre of mass to an attachment point, in world: (3,)."""
-        return rotate(self.orientation, offset) if any(offset) else offset
+        return _rotate(self.orientation, offset) if any(offset) else offset
 
 
 def moves(model, state):
@@ -52,9 +56,9 @@ def is_equilibrium(model, drive, start, holds):
         return False
     if is_unbalanced(model, drive, start, holds):
         return False
-    left = np.zeros_like(start)
-    apply_forces(model, drive._replace(works=None), 0.0, start, left)
-    return not left.any() or _is_rounding(model, drive, start, holds, left)
+    left = [0.0] * len(start)
+    _apply_forces(model, drive._replace(works=None), 0.0, start.tolist(), left)
+    return not any(left) or _is_rounding(model, drive, start, holds, left)
 
 
 def comes_to_rest(model, drive, state, longest):
@@ -111,10 +115,10 @@ def _is_rounding(model, drive, start, holds, left):
     things = _bodies(model, start)
     _add_sizes(model, drive, holds, things)
     for i, thing in enumerate(things):
-        if not cancels(tuple(left[3 * (bodies + i):3 * (bodies + i) + 3].tolist()),
+        if not cancels(tuple(left[3 * (bodies + i):3 * (bodies + i) + 3]),
                        thing.force_size):
             return False
-        if i < rigid and not cancels(tuple(left[torque_at + 3 * i:torque_at + 3 * i + 3].tolist()),
+        if i < rigid and not cancels(tuple(left[torque_at + 3 * i:torque_at + 3 * i + 3]),
                                      thing.moment_size):
             return False
     return _is_stable(rigid, holds, things)
@@ -125,25 +129,25 @@ def _add_sizes(model, drive, holds, things):
     if model.air is not None and model.air.linear_drag is not None:
         drag, wind = model.air.linear_drag, model.air.velocity or (0.0, 0.0, 0.0)
     for i, thing in enumerate(things):
-        thing.force_size = drag * norm(tuple(wind))
+        thing.force_size = drag * _norm(tuple(wind))
         for rows in (model.weight, None if drive.pushes is None
                      else drive.pushes[3 * len(things):6 * len(things)].reshape(-1, 3)):
             if rows is not None:
-                thing.force_size += norm(tuple(rows[i].tolist()))
+                thing.force_size += _norm(tuple(rows[i].tolist()))
     for hold in holds:
         size = spring_size(hold.stiffness, hold.natural_length, _place(hold.p, things),
                            _place(hold.q, things))
         for end in (hold.p, hold.q):
             if end.body is not None:
                 things[end.body].force_size += size
-                things[end.body].moment_size += size * norm(end.offset)
+                things[end.body].moment_size += size * _norm(end.offset)
 
 
 def _place(end, things):
     if end.body is None:
         return end.position
     thing = things[end.body]
-    return add(thing.position, thing.arm(end.offset))
+    return _add(thing.position, thing.arm(end.offset))
 
 
 def _is_stable(rigid, holds, things):
@@ -165,11 +169,11 @@ def _is_stable(rigid, holds, things):
 
 def _curvature(hold, rigid, things, size):
     """Return the second derivatives of a spring's energy; None where there are none."""
-    r = subtract(_place(hold.q, things), _place(hold.p, things))
-    length = norm(r)
+    r = _subtract(_place(hold.q, things), _place(hold.p, things))
+    length = _norm(r)
     if length == 0.0 and hold.natural_length > 0.0:
         return None
-    u = scale(1.0 / length, r) if length > 0.0 else r
+    u = _scale(1.0 / length, r) if length > 0.0 else r
     pull = hold.stiffness * (length - hold.natural_length)
     across = pull / length if length > 0.0 else hold.stiffness
     # how each component of the way of Q from P depends on displacements and turns
@@ -177,18 +181,19 @@ def _curvature(hold, rigid, things, size):
     for end, sign in ((hold.p, -1.0), (hold.q, 1.0)):
         if end.body is None:
             continue
-        way[:, 3 * end.body:3 * end.body + 3] += sign * np.eye(3)
+        way[:, 3 * end.body:3 * end.body + 3] += sign * _EYE
         if end.body < rigid:
             a = things[end.body].arm(end.offset)
             turn = slice(3 * (len(things) + end.body), 3 * (len(things) + end.body) + 3)
             way[:, turn] += sign * np.array([[0, a[2], -a[1]], [-a[2], 0, a[0]], [a[1], -a[0], 0]])
             bend = np.outer(u, a)
-            more[turn, turn] += sign * pull * (0.5 * (bend + bend.T) - dot(u, a) * np.eye(3))
+            more[turn, turn] += sign * pull * (0.5 * (bend + bend.T) - _dot(u, a) * _EYE)
     along = np.outer(u, u)
-    stiffness = hold.stiffness * along + across * (np.eye(3) - along)
+    stiffness = hold.stiffness * along + across * (_EYE - along)
+    # not by a library's product: those differ in the last bits from machine to machine
     for i in range(3):
-        for j in range(3):
-            more += stiffness[i, j] * np.outer(way[i], way[j])
+        pulled = stiffness[i, 0] * way[0] + stiffness[i, 1] * way[1] + stiffness[i, 2] * way[2]
+        more += way[i, :, np.newaxis] * pulled
     return more
 
 

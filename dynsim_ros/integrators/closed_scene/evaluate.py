@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a motion in closed form to its states, at any instants."""
 
-from .tops import top_from
+from .tops import find_constants, top_from
 from .works import count_works
-from ..closed_form import (along_spring, flight, free_spin, on_centred_springs, seconds,
-                           spin_down, spin_up, torque_free, turn_and_spin, whirled)
+from ..closed_form import (along_spring, constant_of_whirl, flight, free_spin, on_centred_springs,
+                           seconds, spin_down, spin_up, torque_free, turn_and_spin, whirl_series,
+                           whirled)
 from ...physics.jit import formula, kernel
 from ...physics.state import (omega_at, put_quaternion, quaternion, quaternion_at, velocity_at)
 from ...physics.vector import at, dot, put, subtract
@@ -74,9 +75,24 @@ def slow_down(slowed, t, left, bodies, rigid, start, y):
 
 
 @formula
+def find_series(whirls, bodies, rigid, start):
+    """Write series and constants of all Whirls, from the state at the start, unless known."""
+    if whirls.known[0]:
+        return
+    for k in range(whirls.body.shape[0]):
+        i = whirls.body[k]
+        whirl_series(at(start, omega_at(bodies, rigid) + 3 * i), at(whirls.final[k], 0),
+                     whirls.decay[k], whirls.series[k])
+        put_quaternion(whirls.constant[k], 0, constant_of_whirl(
+            whirls.series[k], quaternion(start, quaternion_at(bodies) + 4 * i)))
+    whirls.known[0] = True
+
+
+@formula
 def turn_with_air(whirls, t, left, bodies, rigid, start, y):
     """Write the rotations that the air takes along to y; return the work of commanded torques."""
     work = 0.0
+    find_series(whirls, bodies, rigid, start)
     for k in range(whirls.body.shape[0]):
         j = omega_at(bodies, rigid) + 3 * whirls.body[k]
         acceleration = at(whirls.acceleration[k], 0)
@@ -91,8 +107,9 @@ def turn_with_air(whirls, t, left, bodies, rigid, start, y):
 
 
 @formula
-def turn_tops(tops, t, left, bodies, rigid, y):
+def turn_tops(tops, t, left, bodies, rigid, start, y):
     """Write the rotations without moments to y."""
+    find_constants(tops, bodies, rigid, start)
     for k in range(tops.body.shape[0]):
         orientation, omega = torque_free(top_from(tops.constants[k]), t, left)
         put_quaternion(y, quaternion_at(bodies) + 4 * tops.body[k], orientation)
@@ -110,7 +127,7 @@ def turn_bodies(spins, slowed, whirls, tops, t, left, bodies, rigid, start, y):
     if whirls is not None:
         work += turn_with_air(whirls, t, left, bodies, rigid, start, y)
     if tops is not None:
-        turn_tops(tops, t, left, bodies, rigid, y)
+        turn_tops(tops, t, left, bodies, rigid, start, y)
     return work
 
 

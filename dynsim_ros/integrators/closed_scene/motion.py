@@ -69,7 +69,8 @@ class Whirls(NamedTuple):
     Rotations with scalar inertia that the air soon takes along with it, about any axes.
 
     As Slowed, and decay: (n,) [1/s]; final: (n, 3) what the spin tends to [rad/s]; series:
-    (n, TERMS, 4) and constant: (n, 4) from whirl_series and constant_of_whirl.
+    (n, TERMS, 4) and constant: (n, 4) from whirl_series and constant_of_whirl, as soon as known:
+    (1,) is True, see Tops.
     """
 
     body: np.ndarray
@@ -81,13 +82,23 @@ class Whirls(NamedTuple):
     final: np.ndarray
     series: np.ndarray
     constant: np.ndarray
+    known: np.ndarray
 
 
 class Tops(NamedTuple):
-    """Rotations without moments; body: (n,); constants: (n, TOP_SIZE), TorqueFree laid flat."""
+    """
+    Rotations without moments.
+
+    body: (n,); moments: (n, 3), axes: (n, 3, 3), from principal_axes; constants: (n, TOP_SIZE),
+    TorqueFree laid flat, as soon as known: (1,) is True: the compiled kernel finds them, which
+    plain Python takes long for.
+    """
 
     body: np.ndarray
+    moments: np.ndarray
+    axes: np.ndarray
     constants: np.ndarray
+    known: np.ndarray
 
 
 class Holding(NamedTuple):

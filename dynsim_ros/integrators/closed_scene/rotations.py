@@ -6,8 +6,9 @@ import numpy as np
 
 from .motion import Slowed, Spins, Tops, Whirls
 from .rotation import rotations_of
-from .tops import laid_flat
-from ..closed_form import constant_of_whirl, principal_axes, torque_free_in_full, whirl_series
+from .tops import TOP_SIZE
+from ..closed_form import principal_axes
+from ..closed_form.whirl import TERMS
 
 
 def rotations(model, drive, start, axes):
@@ -20,7 +21,7 @@ def rotations(model, drive, start, axes):
     if model.rigid == 0:
         return {}
     found = rotations_of(model, drive, start)
-    spinning, whirled, free = {}, {}, {}
+    spinning, whirled, free = {}, {}, []
     if model.round_body is not None:
         for i, inertia in zip(model.round_body.tolist(), model.round_inertia.tolist()):
             if found[i].keeps_axis:
@@ -30,23 +31,25 @@ def rotations(model, drive, start, axes):
             else:
                 return None
     if model.general_body is not None:
-        for i, matrix, axis in zip(model.general_body.tolist(), model.inertia.tolist(), axes):
+        for k, i in enumerate(model.general_body.tolist()):
             if found[i].is_free:
-                free[i] = laid_flat(torque_free_in_full(*axis, found[i].orientation,
-                                                        found[i].omega))
-            elif (inertia := found[i].inertia_about_axis(matrix)) is not None:
+                free.append(k)
+            elif (inertia := found[i].inertia_about_axis(model.inertia[k].tolist())) is not None:
                 spinning[i] = inertia
             else:
                 return None
     resisted = model.air is not None and bool(model.air.rotational_drag)
     return {'spins': None if resisted else _spins(found, spinning),
             'slowed': _slowed(model, found, spinning) if resisted else None,
-            'whirls': _whirls(model, found, whirled), 'tops': _tops(free)}
+            'whirls': _whirls(model, found, whirled), 'tops': _tops(model, axes, free)}
 
 
 def all_axes(model):
-    """Return what principal_axes returns for each body with an inertia matrix."""
-    return [] if model.inertia is None else [principal_axes(matrix) for matrix in model.inertia]
+    """Return what principal_axes returns for each inertia matrix: (m, 3) and (m, 3, 3)."""
+    if model.inertia is None:
+        return None
+    moments, axes = zip(*map(principal_axes, model.inertia))
+    return np.array(moments), np.array(axes)
 
 
 def _spins(found, inertias):
@@ -68,16 +71,16 @@ def _whirls(model, found, inertias):
     slowed = _slowed(model, found, inertias)
     if slowed is None:
         return None
-    decays = [slowed.drag / inertia for inertia in inertias.values()]
-    series = [whirl_series(found[i].omega, found[i].final, decay)
-              for i, decay in zip(inertias, decays)]
-    constants = [constant_of_whirl(coefficients, found[i].orientation)
-                 for i, coefficients in zip(inertias, series)]
+    decays, count = [slowed.drag / inertia for inertia in inertias.values()], len(inertias)
     return Whirls(*slowed, np.array(decays), np.array([found[i].final for i in inertias]),
-                  np.array(series), np.array(constants))
+                  np.empty((count, TERMS, 4)), np.empty((count, 4)), np.zeros(1, dtype=bool))
 
 
-def _tops(constants):
-    if not constants:
+def _tops(model, axes, free):
+    """Return the Tops that bodies number `free` of those with an inertia matrix are."""
+    if not free:
         return None
-    return Tops(np.array([*constants]), np.array([*constants.values()]))
+    parts = model.general_body, *axes
+    if len(free) < len(model.general_body):
+        parts = [part[free] for part in parts]
+    return Tops(*parts, np.empty((len(free), TOP_SIZE)), np.zeros(1, dtype=bool))
