@@ -12,9 +12,9 @@ the step of order 14 takes as long as the 21 evaluations of its longest sequence
 sequences, of 2 and 4 substeps, would not shorten that, and are worth less than longer ones.
 """
 
-from .advancing import Advancing
 from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
 from .memory import lane_row
+from ..physics.advancing import Advancing
 from ..physics.arms import (arm_of_state, begin_arm, put_arm, restart_arm, step_arm,
                             with_arm)
 from ..physics.jit import part

@@ -8,8 +8,8 @@ States are arrays or Cells, of numbers or of Lanes. Absent terms (None) are not 
 
 from numba import literal_unroll
 
-from .equations_of_motion import (angular_acceleration, linear_acceleration,
-                                  scalar_angular_acceleration)
+from .advancing import put_angular_acceleration, put_linear_acceleration
+from .equations_of_motion import angular_acceleration
 from .forces import (apply_springs, begin_works, put_powers, with_linear_drag, with_push,
                      with_rotational_drag, with_weight)
 from .jit import formula
@@ -74,7 +74,7 @@ def accelerate_round(several, bodies, rigid, round_body, round_inertia, forces, 
     if round_body is not None:
         for k in range(chosen(several, round_body)):
             w = omega_at(bodies, rigid) + 3 * member(several, round_body, k)
-            put(out, w, scalar_angular_acceleration(at(forces, w), round_inertia[k]))
+            put_angular_acceleration(out, w, at(forces, w), round_inertia[k])
 
 
 @formula
@@ -124,7 +124,7 @@ def put_accelerations(model, drive, t, y, forces, out):
     apply_forces(model, drive, t, y, forces)
     for i in range(bodies):
         v = velocity_at(bodies) + 3 * i
-        put(out, v, linear_acceleration(at(forces, v), model.mass[i]))
+        put_linear_acceleration(out, v, at(forces, v), model.mass[i])
     accelerate_round(model.several, bodies, rigid, model.round_body, model.round_inertia, forces,
                      out)
     accelerate_general(model.several, bodies, rigid, model.general_body, model.inertia,

@@ -1,0 +1,79 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A state that goes on by a step as its rates are written, so that these need no memory of their own.
+
+What is written to Advancing[i] is a rate; times the step, it is added to number i of the state.
+Forces are divided by masses, and moments by inertias, together with the step: that does not have
+to wait until they are there.
+"""
+
+import operator
+from typing import NamedTuple
+
+from numba import types
+from numba.extending import overload
+
+from .cells import CellsType
+from .equations_of_motion import linear_acceleration, scalar_angular_acceleration
+from .fused import fused
+from .vector import accumulate_scaled, put
+
+
+class Advancing(NamedTuple):
+    """step [s]: number or Lanes; state: Cells. Each of its numbers is to be written once."""
+
+    step: float
+    state: CellsType
+
+    def __setitem__(self, i, rate):
+        """Add the step times a rate."""
+        self.state[i] = fused(self.step, rate, self.state[i])
+
+
+def _advances(cells):
+    """Tell whether a type is that of Advancing."""
+    return isinstance(cells, types.NamedTuple) and cells.instance_class is Advancing
+
+
+@overload(operator.setitem)
+def _set_item(cells, i, rate):
+    if not _advances(cells):
+        return None
+
+    def add(cells, i, rate):
+        cells.state[i] = fused(cells.step, rate, cells.state[i])
+    return add
+
+
+def put_linear_acceleration(out, i, force, mass):
+    """Write the acceleration by a force (3,) to Cells, an array or Advancing."""
+    if isinstance(out, Advancing):
+        accumulate_scaled(out.state, i, out.step * (1.0 / mass), force)
+    else:
+        put(out, i, linear_acceleration(force, mass))
+
+
+def put_angular_acceleration(out, i, moment, inertia):
+    """Write likewise the angular acceleration by a moment (3,), where inertia is a number."""
+    if isinstance(out, Advancing):
+        accumulate_scaled(out.state, i, out.step * (1.0 / inertia), moment)
+    else:
+        put(out, i, scalar_angular_acceleration(moment, inertia))
+
+
+@overload(put_linear_acceleration)
+def _put_linear_acceleration(out, i, force, mass):
+    if _advances(out):
+        return lambda out, i, force, mass: accumulate_scaled(
+            out.state, i, out.step * (1.0 / mass), force)
+    return lambda out, i, force, mass: put(out, i, linear_acceleration(force, mass))
+
+
+@overload(put_angular_acceleration)
+def _put_angular_acceleration(out, i, moment, inertia):
+    if _advances(out):
+        return lambda out, i, moment, inertia: accumulate_scaled(
+            out.state, i, out.step * (1.0 / inertia), moment)
+    return lambda out, i, moment, inertia: put(
+        out, i, scalar_angular_acceleration(moment, inertia))
