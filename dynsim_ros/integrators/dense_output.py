@@ -197,8 +197,6 @@ def dense_explicit(model, drive, table, size, t, step, y, rate, y_new, rate_new,
         nearby[i] = fused(near, choose(from_start, rate[i], rate_new[i]),
                           choose(from_start, y[i], y_new[i]))
     rates(model, drive, begin + near, nearby, changing)
-    # Of a difference over twice the distance, to the second derivative with respect to s.
-    per_difference = 0.125 * step / _NEARBY
     half = 0.5 * step
     # From a difference over twice the distance to the second derivative with respect to s.
     per_difference = 0.125 * step / _NEARBY
