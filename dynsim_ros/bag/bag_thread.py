@@ -12,6 +12,7 @@ import threading
 
 import numpy as np
 
+from .any_processor import use_any_processor
 from .backlog import Backlog
 from .gap import Gap, MISSING
 from .pack_rows import RowPlan
@@ -117,6 +118,7 @@ class BagThread:
         self._close(finished)
 
     def _run(self):
+        use_any_processor()
         while not self.is_closing:
             self.wake.wait(_RETRY if self.is_failing else _PERIOD)
             self.wake.clear()

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 import threading
 
+from .any_processor import use_any_processor
 from .output import sync_folder
 from .writer import BagWriter
 
@@ -42,6 +43,7 @@ class Syncing:
             self._thread.join()
 
     def _run(self):
+        use_any_processor()
         while not self._ending.wait(self.period):
             with self.lock:
                 writer = self._writer()

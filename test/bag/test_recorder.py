@@ -1,5 +1,6 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
+import os
 import threading
 import time
 
@@ -47,6 +48,29 @@ def test_messages_reach_the_file_while_recording(writer):
         assert count == 1
     with open_bag(recorder.path) as bag:
         assert bag.complete and bag.count == 1
+
+
+@pytest.mark.skipif(not hasattr(os, 'sched_setaffinity') or len(os.sched_getaffinity(0)) < 2,
+                    reason='needs two processors, and a system that can choose')
+def test_it_does_not_stay_where_it_was_begun(writer):
+    """Begin to record in a thread that has to stay on one processor, as that of the ticks may."""
+    recorders, usable = [], os.sched_getaffinity(0)
+
+    def begin():
+        os.sched_setaffinity(0, {min(usable)})
+        recorders.append(Recorder(writer, sync_period=1.0))
+
+    beginning = threading.Thread(target=begin)
+    beginning.start()
+    beginning.join()
+    threads = [thread.native_id for thread in threading.enumerate()
+               if thread.name in ('bag recorder', 'bag sync')]
+    limit = time.monotonic() + 5
+    while any(os.sched_getaffinity(thread) != usable for thread in threads):
+        assert time.monotonic() < limit
+        time.sleep(0.01)
+    assert len(threads) == 2
+    recorders[0].close()
 
 
 def test_a_time_that_goes_back_is_kept_out(writer):
