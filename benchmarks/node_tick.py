@@ -32,20 +32,10 @@ class Ours:
 
     def __init__(self, node, topics):
         sys.path.append(str(Path(__file__).resolve().parent.parent / 'test'))
-        from all_listen import AllListen
+        from bursting import Bursting
         from dynsim_ros.messages.scene_channels import scene_channels
-        from dynsim_ros.messages.tick_rows import TickRows
-        from dynsim_ros.ros.bursts import Bursts
-        from dynsim_ros.ros.clock import ClockPublisher
-        from dynsim_ros.ros.histogram import Histogram
-        from dynsim_ros.ros.inbox import Mailbox
-        from dynsim_ros.ros.own_parameters import OWN
-        from dynsim_ros.ros.pacing import Pacer
-        from dynsim_ros.ros.run import Run
-        from dynsim_ros.ros.topics import Topics
         from dynsim_ros.scene import load_scene
         from dynsim_ros.simulation import Simulator
-        from dynsim_ros.simulation.simulator import MOST_AHEAD
 
         self._simulator = Simulator(load_scene('sphere_on_spring'), rate=1000.0, integrator='rk4')
         self._simulator.advance_tick()
@@ -53,21 +43,14 @@ class Ours:
                     for channel in scene_channels(self._simulator.scene, self._simulator.layout)
                     if channel.topic in topics]
         assert len(channels) == len(topics)
-        options = {name: own.default for name, own in OWN.items()}
-        published = Topics(
-            node, channels, TickRows(channels, self._simulator.layout, reserve=MOST_AHEAD),
-            AllListen(), options)
-        run = Run(self._simulator, published, ClockPublisher(node, AllListen()), options, node)
-        self._pacer = Pacer(SPEED)
-        self._bursts = Bursts(run, self._pacer, Mailbox(self._pacer.now), Histogram(), 0.0)
+        self._bursting = Bursting(node, self._simulator, channels, SPEED)
 
     def ticks(self, count):
         """Run so many ticks at least; return how many were."""
         first = self._simulator.tick
         while self._simulator.tick < first + count:
-            self._pacer.restart(self._simulator.time_ns + round(LATE * SPEED))
-            # None where the machine was away meanwhile: then they are too late.
-            self._bursts.go()
+            # None are run where the machine was away meanwhile: then they are too late.
+            self._bursting.go(round(LATE * SPEED))
         return self._simulator.tick - first
 
 

@@ -4,23 +4,15 @@
 
 import threading
 
-from all_listen import AllListen
+from bursting import Bursting
 from dynsim_ros.cli.rerun import main as rerun
 from dynsim_ros.messages.scene_channels import scene_channels
 from dynsim_ros.messages.tick_rows import TickRows
-from dynsim_ros.ros.bursts import Bursts, prepare_bursts
-from dynsim_ros.ros.clock import ClockPublisher
-from dynsim_ros.ros.histogram import Histogram
-from dynsim_ros.ros.inbox import Mailbox
-from dynsim_ros.ros.own_parameters import OWN
-from dynsim_ros.ros.pacing import Pacer
-from dynsim_ros.ros.run import Run
+from dynsim_ros.ros.bursts import prepare_bursts
 from dynsim_ros.ros.sending import prepare_sending
 from dynsim_ros.ros.ticker import Ticker
-from dynsim_ros.ros.topics import Topics
 from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation import MoveAnchor, Simulator
-from dynsim_ros.simulation.simulator import MOST_AHEAD
 import pytest
 from ros_client import Client, stamps
 
@@ -28,7 +20,7 @@ SCENE, RATE = load_scene('sphere_on_spring'), 1000.0
 POSE, MARKERS = 'sphere/pose', 'markers'
 
 
-class Bench:
+class Bench(Bursting):
     """A run at the end of its first step, and what lets it burst; with_others: also markers."""
 
     def __init__(self, node, with_others=False):
@@ -38,17 +30,9 @@ class Bench:
         prepare_bursts()
         self.channels = [channel for channel in scene_channels(simulator.scene, simulator.layout)
                          if channel.row is not None or with_others and channel.topic == MARKERS]
-        options = {name: own.default for name, own in OWN.items()}
-        topics = Topics(node, self.channels,
-                        TickRows(self.channels, simulator.layout, reserve=MOST_AHEAD),
-                        AllListen(), options)
-        self.run = Run(simulator, topics, ClockPublisher(node, AllListen()), options, node)
+        super().__init__(node, simulator, self.channels)
         while not simulator.known_ahead() > 10:
             simulator.advance_tick()
-        self.pacer = Pacer(1.0)
-        self.mailbox = Mailbox(self.pacer.now)
-        self.lateness = Histogram()
-        self.bursts = Bursts(self.run, self.pacer, self.mailbox, self.lateness, 0.0)
 
     def go_on(self):
         """Let it burst until a tick was run; return how many were: a busy machine may be late."""
@@ -56,14 +40,6 @@ class Bench:
             if ticks := self.go():
                 return ticks
         raise AssertionError('no tick was run')
-
-    def go(self):
-        """Let it burst once; return how many ticks were run."""
-        before = self.run.simulator.tick
-        self.pacer.restart(self.run.simulator.time_ns)
-        ticks = self.bursts.go()
-        assert self.run.simulator.tick == before + ticks
-        return ticks
 
 
 @pytest.fixture
