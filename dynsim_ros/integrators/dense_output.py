@@ -156,6 +156,7 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
     f = lane_row(model.several, memory, 2, size)
     state = lane_row(model.several, memory, 4, size)
     base = lane_row(model.several, memory, 5, size)
+    following = lane_row(model.several, memory, 6, size)
     way, from_start = step * lanes_at(table, _TARGETS), lanes_at(table, COUNT)
     start = choose(from_start, t, t + step)
     for i in range(size):
@@ -168,14 +169,15 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
         for i in range(size):
             a[i] = spread(0.0)
             b[i] = h * choose(from_start, rate[i], rate_new[i])
+            state[i] = base[i] + b[i]
         begin_arm(arm, h, base, a, b)
         passed = h
         for pair in range(stage + 1):
-            midpoint(whole, drive, size, start, passed, h, base, arm, reach, a, b, state, f)
+            midpoint(whole, drive, start, passed, h, base, arm, reach, a, b, state, f, following)
             passed = passed + h
             if pair == stage:
                 break
-            midpoint(whole, drive, size, start, passed, h, base, arm, reach, b, a, state, f)
+            midpoint(whole, drive, start, passed, h, base, arm, reach, b, a, following, f, state)
             passed = passed + h
         weight = table[_SEQUENCES + stage]
         for i in range(size):

@@ -33,19 +33,17 @@ def gragg_schedule(substeps=SUBSTEPS, stages=None):
 
 
 @part
-def midpoint(model, drive, size, t, way, h, y, arm, reach, behind, here, state, f):
+def midpoint(model, drive, t, way, h, y, arm, reach, behind, here, state, f, following):
     """
     Put behind + 2 h f(here) where `behind` was.
 
     model: as from with_arm; behind, here: Lanes, less the state y at the start and its arm: sums
     of small numbers are rounded less; t: [s] of the start; way: Lanes, from it to the time of
-    `here`; state, f: Cells to use.
+    `here`; state: y + here, following: becomes y + behind; f: Cells to use.
     """
-    for i in range(size):
-        state[i] = y[i] + here[i]
     put_arm(arm, here, state)
     put_reach(reach, way, here, state)
-    put_rates(model, drive, t + way, state, f, Advancing(h + h, behind))
+    put_rates(model, drive, t + way, state, f, Advancing(h + h, behind, y, following))
     step_arm(arm, h, state, behind)
 
 
@@ -63,6 +61,7 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
     f = lane_row(model.several, memory, 2, size)
     first = lane_row(model.several, memory, 3, size)
     state = lane_row(model.several, memory, 4, size)
+    following = lane_row(model.several, memory, 6, size)
     table = plan.table
     h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
     way = h
@@ -72,9 +71,10 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
     for i in range(size):
         a[i] = spread(0.0)
         b[i] = h * rate[i]
+        state[i] = y[i] + b[i]
         first[i] = spread(0.0)
     for row in range(0, plan.rows, 2):
-        midpoint(whole, drive, size, t, way, h, y, arm, reach, a, b, state, f)
+        midpoint(whole, drive, t, way, h, y, arm, reach, a, b, state, f, following)
         way = way + h
         if row >= plan.first_end:
             ended = lanes_at(table, ENDS + COUNT * row)
@@ -82,12 +82,13 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
                 first[i] = choose(ended, a[i], first[i])
                 b[i] = choose(ended, 0.0, b[i])
                 a[i] = choose(ended, h_second * rate[i], a[i])
+                following[i] = y[i] + a[i]
             restart_arm(arm, ended, h_second, y, a, b)
             way = choose(ended, h_second, way)
             h = choose(ended, h_second, h)
         if row == plan.rows - 1:
             break
-        midpoint(whole, drive, size, t, way, h, y, arm, reach, b, a, state, f)
+        midpoint(whole, drive, t, way, h, y, arm, reach, b, a, following, f, state)
         way = way + h
     second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1 - plan.rows % 2))
     for i in range(size):

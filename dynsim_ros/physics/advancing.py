@@ -17,18 +17,41 @@ from numba.extending import overload
 from .cells import CellsType
 from .equations_of_motion import linear_acceleration, scalar_angular_acceleration
 from .fused import fused
-from .vector import accumulate_scaled, put
+from .jit import formula
+from .vector import put
 
 
 class Advancing(NamedTuple):
-    """step [s]: number or Lanes; state: Cells. Each of its numbers is to be written once."""
+    """
+    step [s]: number or Lanes; change: Cells, a state less `start`; whole: Cells, then the state.
+
+    Each of its numbers is to be written once.
+    """
 
     step: float
-    state: CellsType
+    change: CellsType
+    start: CellsType
+    whole: CellsType
 
     def __setitem__(self, i, rate):
         """Add the step times a rate."""
-        self.state[i] = fused(self.step, rate, self.state[i])
+        advance(self, i, self.step, rate)
+
+
+@formula
+def advance(cells, i, step, rate):
+    """Add step times rate to number i of Advancing."""
+    change = fused(step, rate, cells.change[i])
+    cells.change[i] = change
+    cells.whole[i] = cells.start[i] + change
+
+
+@formula
+def advance_three(cells, i, step, rates):
+    """Add step times rates (3,) to three numbers of Advancing."""
+    advance(cells, i, step, rates[0])
+    advance(cells, i + 1, step, rates[1])
+    advance(cells, i + 2, step, rates[2])
 
 
 def _advances(cells):
@@ -42,14 +65,14 @@ def _set_item(cells, i, rate):
         return None
 
     def add(cells, i, rate):
-        cells.state[i] = fused(cells.step, rate, cells.state[i])
+        advance(cells, i, cells.step, rate)
     return add
 
 
 def put_linear_acceleration(out, i, force, mass):
     """Write the acceleration by a force (3,) to Cells, an array or Advancing."""
     if isinstance(out, Advancing):
-        accumulate_scaled(out.state, i, out.step * (1.0 / mass), force)
+        advance_three(out, i, out.step * (1.0 / mass), force)
     else:
         put(out, i, linear_acceleration(force, mass))
 
@@ -57,7 +80,7 @@ def put_linear_acceleration(out, i, force, mass):
 def put_angular_acceleration(out, i, moment, inertia):
     """Write likewise the angular acceleration by a moment (3,), where inertia is a number."""
     if isinstance(out, Advancing):
-        accumulate_scaled(out.state, i, out.step * (1.0 / inertia), moment)
+        advance_three(out, i, out.step * (1.0 / inertia), moment)
     else:
         put(out, i, scalar_angular_acceleration(moment, inertia))
 
@@ -65,15 +88,14 @@ def put_angular_acceleration(out, i, moment, inertia):
 @overload(put_linear_acceleration)
 def _put_linear_acceleration(out, i, force, mass):
     if _advances(out):
-        return lambda out, i, force, mass: accumulate_scaled(
-            out.state, i, out.step * (1.0 / mass), force)
+        return lambda out, i, force, mass: advance_three(out, i, out.step * (1.0 / mass), force)
     return lambda out, i, force, mass: put(out, i, linear_acceleration(force, mass))
 
 
 @overload(put_angular_acceleration)
 def _put_angular_acceleration(out, i, moment, inertia):
     if _advances(out):
-        return lambda out, i, moment, inertia: accumulate_scaled(
-            out.state, i, out.step * (1.0 / inertia), moment)
+        return lambda out, i, moment, inertia: advance_three(
+            out, i, out.step * (1.0 / inertia), moment)
     return lambda out, i, moment, inertia: put(
         out, i, scalar_angular_acceleration(moment, inertia))
