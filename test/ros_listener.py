@@ -9,6 +9,7 @@ As a module: `Listener` starts the script and collects its lines.
 
 from importlib import import_module
 import json
+import signal
 import subprocess
 import sys
 import threading
@@ -47,6 +48,14 @@ class Listener:
             time.sleep(0.01)
         time.sleep(0.1)
         return list(self.heard)
+
+    def hold(self):
+        """Let the process do nothing until it is to go on."""
+        self._process.send_signal(signal.SIGSTOP)
+
+    def go_on(self):
+        """Let it go on."""
+        self._process.send_signal(signal.SIGCONT)
 
     def close(self):
         """End the process."""

@@ -64,6 +64,18 @@ class Qos:
 STATE = Qos()
 LATCHED = Qos(durability='transient_local', depth=1)
 COMMAND = Qos()
+# How many messages of a topic are kept for who has to ask for them again, and of all together.
+_MOST_OF_ONE, _MOST_OF_ALL = 1000, 20_000
+
+
+def every_tick(topics: int) -> Qos:
+    """
+    Return what is offered of topics that have a message at every tick; topics: how many.
+
+    What a subscriber lacks that was away for a second at 1 kHz is there for it; memory for one
+    that never answers stays bounded.
+    """
+    return Qos(depth=max(STATE.depth, min(_MOST_OF_ONE, _MOST_OF_ALL // max(topics, 1))))
 
 
 @cache

@@ -4,8 +4,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from .channel import Channel, WORLD
 from .markers import marker_channel
+from .qos import every_tick
 from .row import Row
 from .state_hash import STATE_HASH
 from .template import Template
@@ -32,7 +35,10 @@ def scene_channels(scene, layout, node='/dynsim'):
         channels += [_pose(body, numbers), _twist(body, numbers)]
         channels += [_wrench(kind, body, numbers) for kind in wrench_kinds(scene, body)]
     channels += [_anchor_pose(anchor, numbers) for anchor in scene.anchors]
-    return [*channels, _energy(numbers), transform_channel(scene, node), marker_channel(scene),
+    channels.append(_energy(numbers))
+    qos = every_tick(len(channels))
+    channels = [replace(channel, qos=qos) for channel in channels]
+    return [*channels, transform_channel(scene, node), marker_channel(scene),
             STATE_HASH]
 
 

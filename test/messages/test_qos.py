@@ -1,6 +1,9 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-from dynsim_ros.messages.qos import COMMAND, LATCHED, offered, Qos, STATE
+from dynsim_ros.messages.qos import COMMAND, every_tick, LATCHED, offered, Qos, STATE
+from dynsim_ros.messages.scene_channels import scene_channels
+from dynsim_ros.scene import load_scene
+from dynsim_ros.simulation import Simulator
 import pytest
 from rosbags.rosbag2.metadata import dump_qos_v8, parse_qos
 import yaml
@@ -31,6 +34,14 @@ def test_profiles_that_differ_become_one_that_everybody_matches():
 def test_unknown_history_becomes_the_default():
     text = LATCHED.offered_qos_profiles().replace('keep_last', 'unknown').replace('h: 1', 'h: 0')
     assert offered(text) == Qos(durability='transient_local')
+
+
+def test_less_is_kept_of_each_where_there_are_many():
+    assert [every_tick(topics).depth for topics in (1, 9, 20, 100, 2000, 9000)] == [
+        1000, 1000, 1000, 200, 10, 10]
+    simulator = Simulator(load_scene('sphere_on_spring'))
+    channels = scene_channels(simulator.scene, simulator.layout)
+    assert {channel.qos for channel in channels if channel.row} == {every_tick(9)}
 
 
 @pytest.mark.parametrize('text', ['', '[]', ': [', '- 3', 'a: b', '- {depth: x}', '3'])

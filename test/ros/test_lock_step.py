@@ -6,10 +6,12 @@ import time
 
 from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation import MoveAnchor, Simulator
-from geometry_msgs.msg import PointStamped
+from geometry_msgs.msg import PointStamped, PoseStamped
 import numpy as np
 import pytest
+from rclpy.serialization import deserialize_message
 from ros_client import stamps
+from ros_listener import Listener
 from scene_topics import DIAGNOSTICS, POSE, positions
 from std_srvs.srv import Trigger
 
@@ -38,6 +40,11 @@ def at_the_beginning(client):
     client.clear()
 
 
+def pose_of(heard):
+    """Return the stamp [ns] of a pose as a Listener has heard it."""
+    return stamps([deserialize_message(heard.data, PoseStamped)])[0]
+
+
 def until(client, seconds):
     """Call ~/step_until; return the response."""
     assert client.configure({'step_until': seconds})[0].successful
@@ -60,6 +67,24 @@ def test_so_many_ticks_and_no_more(client):
     assert heard(client) == [*range(1, 309)]
     (array, *_) = client.more('/diagnostics')
     assert array.status[0].message == 'paused'
+
+
+def test_who_is_away_for_a_while_misses_nothing(client):
+    """Let a process that listens do nothing while more is published than finds room on its way."""
+    listener = Listener(f'/dynsim/sphere/pose={POSE}')
+    try:
+        while not listener.heard:
+            client.step()
+            listener.wait(1, 0.1)
+        first, count = pose_of(listener.heard[-1]), 900
+        client.configure({'step_count': float(count)})
+        listener.hold()
+        client.step()
+        listener.go_on()
+        ticks = [pose_of(heard) for heard in listener.wait(count)]
+        assert ticks[-count:] == [*range(first + TICK, first + (count + 1) * TICK, TICK)]
+    finally:
+        listener.close()
 
 
 def test_until_an_instant(client):

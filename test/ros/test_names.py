@@ -65,7 +65,7 @@ def test_overridden_quality_of_service(clients):
     assert info.qos_profile.reliability == ReliabilityPolicy.RELIABLE
     # DDS does not tell others the depth; the node's parameter does
     assert of_left.get('qos_overrides./left/dynsim/sphere/pose.publisher.depth',
-                       'qos_overrides./left/dynsim/sphere/twist.publisher.depth') == [3, 10]
+                       'qos_overrides./left/dynsim/sphere/twist.publisher.depth') == [3, 1000]
 
 
 def test_each_has_commands_and_services_of_its_own(clients):
