@@ -3,9 +3,9 @@
 """
 A state that goes on by a step as its rates are written, so that these need no memory of their own.
 
-What is written to Advancing[i] is a rate; times the step, it is added to number i of the state.
-Forces are divided by masses, and moments by inertias, together with the step: that does not have
-to wait until they are there.
+What is written to Advancing[i] is a rate; times the step, it is added to number i of a change, and
+this to the start. Forces are divided by masses, and moments by inertias, together with the step:
+that does not have to wait until they are there.
 """
 
 import operator
