@@ -56,10 +56,10 @@ def test_what_is_lost_is_told(discovery, measuring):
     """A subscriber is stopped for longer than publishers keep messages."""
     processes, soak = measuring
     with processes.running('ours', 1000) as node, processes.listening(node) as subscriber:
-        subscriber.begin(2.0, 1000)
+        subscriber.begin(4.0, 1000)
         time.sleep(0.5)
         os.kill(subscriber.pid, signal.SIGSTOP)
-        time.sleep(1.0)
+        time.sleep(2.5)
         os.kill(subscriber.pid, signal.SIGCONT)
-        faults = soak.faults([subscriber.end()], 2.0)
+        faults = soak.faults([subscriber.end()], 4.0)
     assert any('sphere/pose: ' in fault for fault in faults), faults
