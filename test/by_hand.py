@@ -29,8 +29,9 @@ from scipy.spatial.transform import Rotation
 RULES = {'gragg': (gragg, gragg_schedule), 'stormer': (stormer, stormer_schedule),
          'stiff': (stiff, stiff_schedule), 'dop853': (dop853, dop853_tableau.table),
          'radau': (radau, radau_tableau.table)}
-# Of a step of radau: its iteration then goes on as long as it makes a difference.
-TOLERANCE = 1e-13
+# Of a step of radau: its iteration then goes on as long as it makes a difference, and it begins
+# without a step before.
+ALONE = (1e-13, 0.0, None)
 
 
 class ByHand:
@@ -63,8 +64,8 @@ class ByHand:
         """Return the state after a step, before its quaternions are normalised, and the error."""
         y_new, error = y.copy(), np.zeros_like(y)
         rate = () if self.method == 'stiff' else (self.rates(t, y),)
-        tolerance = (TOLERANCE,) if self.method == 'radau' else ()
-        self._take(self.model, self.drive, self.plan, self.size, t, h, y, *rate, *tolerance,
+        alone = ALONE if self.method == 'radau' else ()
+        self._take(self.model, self.drive, self.plan, self.size, t, h, y, *rate, *alone,
                    self.memory, y_new, error)
         return y_new, error
 

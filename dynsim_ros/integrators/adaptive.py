@@ -23,7 +23,7 @@ from .gragg import gragg
 from .lane_schedule import Schedule
 from .logarithm import binary_logarithm, binary_power
 from .memory import load, number_row, store
-from .radau import radau
+from .radau import keep_stages, radau
 from .stiff import stiff
 from .stormer import stormer
 from ..physics.jit import formula, kernel
@@ -94,7 +94,7 @@ class Grid(NamedTuple):
 
 @formula
 def attempt(gragg_plan, stormer_plan, stiff_plan, dop853_data, radau_data, model, drive, size, t,
-            h, y, rate, tolerance, memory, y_new, error):
+            h, y, rate, tolerance, h_before, kept, memory, y_new, error):
     """Take one step with the method that is there; return how many evaluations in a row."""
     if gragg_plan is not None:
         gragg(model, drive, gragg_plan, size, t, h, y, rate, memory, y_new, error)
@@ -109,8 +109,8 @@ def attempt(gragg_plan, stormer_plan, stiff_plan, dop853_data, radau_data, model
         dop853(model, drive, dop853_data, size, t, h, y, rate, memory, y_new, error)
         return 11
     if radau_data is not None:
-        return radau(model, drive, radau_data, size, t, h, y, rate, tolerance, memory, y_new,
-                     error)
+        return radau(model, drive, radau_data, size, t, h, y, rate, tolerance, h_before, kept,
+                     memory, y_new, error)
     return 0
 
 
@@ -264,8 +264,8 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
     most attempts; watch: steps that stay longer than this [s], or where it is negative shorter
     than -watch, end the run with SWITCH; calm: a run that has been calm for CALM_TIME, see
     calm_for, ends with AT_REST; 0: none does; clock, counted: see above; states: (4, size) start
-    and end of the last step, the rates there; dense: (size * DENSE_SIZE,). Returns REACHED,
-    BUDGET_SPENT, STEP_TOO_SHORT, SWITCH or AT_REST.
+    and end of the last step, the rates there; dense: (size * DENSE_SIZE,), followed for radau by
+    the stages. Returns REACHED, BUDGET_SPENT, STEP_TOO_SHORT, SWITCH or AT_REST.
     """
     bodies, rigid = counts(model)
     size = moving_size(drive.works, bodies, rigid)
@@ -329,8 +329,8 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
             t = clock[BASE] + clock[END]
             counted[EVALUATIONS] += attempt(
                 tableaux.gragg, tableaux.stormer, tableaux.stiff, tableaux.dop853,
-                tableaux.radau, model, drive, size, t, h, y, rate, tolerance, memory, y_new,
-                error)
+                tableaux.radau, model, drive, size, t, h, y, rate, tolerance, clock[STEP], dense,
+                memory, y_new, error)
             ratio = error_norm(bodies, rigid, y, error) * per_tolerance
             if not ratio < 1e30:
                 ratio = 1e30
@@ -370,6 +370,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
                 rate_new[i] = rate[i]
             clock[STEP] = 0.0
             break
+        keep_stages(tableaux.radau, model, size, memory, dense)
         normalise(bodies, rigid, y_new)
         whole = math.floor(end)
         clock[STEP] = h

@@ -7,7 +7,7 @@ import numpy as np
 from .adaptive import (advance, BASE, BUDGET_SPENT, CLOCK_SIZE, COUNTS_SIZE, END, FLOOR, Grid,
                        MARGIN, NEXT, REACHED, REJECTED, STEP, STEP_TOO_SHORT, STEPS, TO_BEGIN)
 from .entry import entry
-from .memory import DENSE_SIZE, new_memory
+from .memory import DENSE_SIZE, new_memory, STAGES
 from .stiffness import EXPLICIT_REACH, spring_rates
 
 # Farther ahead than any run goes [ns].
@@ -92,7 +92,8 @@ class AdaptiveSteps(Walk):
         # In one piece, which is faster to be cleared.
         self._kept = np.zeros(CLOCK_SIZE + COUNTS_SIZE)
         self.clock, self.counts = self._kept[:CLOCK_SIZE], self._kept[CLOCK_SIZE:].view(np.int64)
-        self.states, self._dense = np.zeros((4, size)), np.zeros(DENSE_SIZE * size)
+        kept = DENSE_SIZE + (0 if method.tableaux.radau is None else STAGES)
+        self.states, self._dense = np.zeros((4, size)), np.zeros(kept * size)
         self.end = self.states[1]
         self.origin = 0
         # The first and the last arguments of advance, which stay as they are.

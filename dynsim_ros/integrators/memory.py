@@ -6,7 +6,7 @@ Where a method keeps its intermediate states: in registers for a single body, el
 The memory is one array: rows of Lanes first, then rows of numbers, each as long as a state,
 then what a linearly implicit method keeps of every spring, and a matrix of springs by springs,
 then what a collocation method keeps of its stages, and a matrix of springs times stages by the
-same.
+same, with its pivots.
 """
 
 from numba.extending import overload
@@ -39,7 +39,7 @@ def new_memory(size, springs):
     springs = max(springs, 1)
     stages = STAGES * (STAGE_ROWS * size + 1 + springs * STAGE_SPRING_SIZE)
     return _zeros_in_line(stage_place(size, springs) + stages
-                          + STAGES * springs * (STAGES * springs + 1))
+                          + STAGES * springs * (STAGES * springs + 2))
 
 
 def _zeros_in_line(count):

@@ -85,12 +85,14 @@ def sum_of(terms):
 
 
 # Places in the packed table: nodes, columns of A, columns of A^2, weights of the error estimate,
-# and of the slope that the polynomial through the stages has at the start.
+# and of the slope that the polynomial through the stages has at the start, one over the product of
+# the differences of each node to the others.
 NODES = 0
 A = STAGES
 A2 = A + STAGES * STAGES
 ERROR = A2 + STAGES * STAGES
 SLOPE = ERROR + STAGES
+LAGRANGE = SLOPE + STAGES
 # The node whose value the error estimate compares with the interpolation of the others.
 _LEFT_OUT = 3
 # That difference has the power 8 of the step, the error at the end 16, or 9 where springs are too
@@ -102,7 +104,7 @@ CAUTION = 0.01
 def table():
     """Return all coefficients in one array."""
     a, c = matrix(), nodes()
-    packed = np.zeros(SLOPE + STAGES)
+    packed = np.zeros(LAGRANGE + STAGES)
     packed[:STAGES] = c
     for i in range(STAGES):
         for j in range(STAGES):
@@ -114,10 +116,11 @@ def table():
         for k, other in enumerate([Fraction(0), *c]):
             if k - 1 not in (j, _LEFT_OUT):
                 weight *= (x - other) / (c[j] - other)
-        slope = 1 / c[j]
+        slope, lagrange = 1 / c[j], Fraction(1)
         for k, other in enumerate(c):
             if k != j:
                 slope *= other / (other - c[j])
-        packed[SLOPE + j] = slope
+                lagrange /= c[j] - other
+        packed[SLOPE + j], packed[LAGRANGE + j] = slope, lagrange
         packed[ERROR + j] = CAUTION * float(-1 if j == _LEFT_OUT else weight)
     return packed

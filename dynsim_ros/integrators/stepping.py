@@ -10,8 +10,8 @@ from .fixed_steps import FixedSteps
 from .stiffness import drag_rate, spring_rates
 
 # From this tolerance on the linearly implicit method needs no more steps than collocation, whose
-# steps cost ten times as much; the cost of these grows with the cube of the number of springs, and
-# their iteration does not know of the drag.
+# steps cost several times as much; the cost of these grows with the cube of the number of springs,
+# and their iteration does not know of the drag.
 _COARSE, _MANY = 3e-4, 4
 # Below this tolerance rounding counts.
 _FINE = 3e-11
@@ -35,7 +35,7 @@ def stiff_method(model, springs, tolerance):
     is_dragged = drag_rate(model) > 0.1 * max(spring_rates(model))
     if tolerance >= _COARSE or springs > _MANY or is_dragged:
         return methods.stiff, 1.2
-    return methods.radau, 10.0
+    return methods.radau, 5.0
 
 
 def new_steps(settings, model, drive, size):
