@@ -12,13 +12,14 @@ the step of order 14 takes as long as the 21 evaluations of its longest sequence
 sequences, of 2 and 4 substeps, would not shorten that, and are worth less than longer ones.
 """
 
-from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
+from .lane_schedule import (add_ended, begin_sums, combine, ENDED, FIRST, place_of, schedule,
+                            SECOND)
 from .memory import lane_row
 from ..physics.advancing import Advancing
 from ..physics.arms import (arm_of_state, begin_arm, put_arm, restart_arm, step_arm,
                             with_arm)
 from ..physics.jit import part
-from ..physics.lanes import choose, COUNT, lanes_at, spread
+from ..physics.lanes import choose, lanes_at, spread
 from ..physics.motion import put_rates
 from ..physics.reach import put_reach, reach_of_state
 
@@ -54,13 +55,14 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
 
     plan: Schedule; t: [s] as for rates; step: [s]; y, rate: Cells, state and its rate at t; y_new,
     error: Cells for the results. First sequences end in rows 0, 2, …, with their result in a;
-    second ones all in the same row, the last or the one before, with theirs in b.
+    second ones in rows 1, 3, …, with theirs in b.
     """
     a = lane_row(model.several, memory, 0, size)
     b = lane_row(model.several, memory, 1, size)
     f = lane_row(model.several, memory, 2, size)
-    first = lane_row(model.several, memory, 3, size)
+    sums = lane_row(model.several, memory, 3, size)
     state = lane_row(model.several, memory, 4, size)
+    errors = lane_row(model.several, memory, 5, size)
     following = lane_row(model.several, memory, 6, size)
     table = plan.table
     h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
@@ -72,14 +74,14 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
         a[i] = spread(0.0)
         b[i] = h * rate[i]
         state[i] = y[i] + b[i]
-        first[i] = spread(0.0)
+    begin_sums(size, sums, errors)
     for row in range(0, plan.rows, 2):
         midpoint(whole, drive, t, way, h, y, arm, reach, a, b, state, f, following)
         way = way + h
-        if row >= plan.first_end:
-            ended = lanes_at(table, ENDS + COUNT * row)
+        if plan.ends[row]:
+            add_ended(table, row, size, a, sums, errors)
+            ended = lanes_at(table, place_of(row, ENDED))
             for i in range(size):
-                first[i] = choose(ended, a[i], first[i])
                 b[i] = choose(ended, 0.0, b[i])
                 a[i] = choose(ended, h_second * rate[i], a[i])
                 following[i] = y[i] + a[i]
@@ -90,7 +92,6 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
             break
         midpoint(whole, drive, t, way, h, y, arm, reach, b, a, following, f, state)
         way = way + h
-    second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1 - plan.rows % 2))
-    for i in range(size):
-        b[i] = choose(second, b[i], 0.0)
-    combine(table, size, y, first, b, y_new, error)
+        if plan.ends[row + 1]:
+            add_ended(table, row + 1, size, b, sums, errors)
+    combine(size, y, sums, errors, y_new, error)

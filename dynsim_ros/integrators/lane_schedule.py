@@ -15,13 +15,12 @@ import numpy as np
 from . import rational
 from ..physics.fused import fused
 from ..physics.jit import formula
-from ..physics.lanes import COUNT, lanes_at, total
+from ..physics.lanes import COUNT, lanes_at, spread, total
 
-# Places of the parts of a table; each is a row of four, one number for each lane.
-FIRST, SECOND = 0, 4
-FIRST_WEIGHT, SECOND_WEIGHT = 8, 12
-FIRST_ERROR, SECOND_ERROR = 16, 20
-ENDS = 24
+# Places of the parts of a table; each has four numbers, one for each lane. The last ones are those
+# of a row, see place_of.
+FIRST, SECOND, _ROWS = 0, COUNT, 2 * COUNT
+WEIGHT, ERROR, ENDED, _ROW_SIZE = 0, COUNT, 2 * COUNT, 3 * COUNT
 
 
 class Schedule(NamedTuple):
@@ -29,31 +28,52 @@ class Schedule(NamedTuple):
     Sequences in lanes.
 
     stages: one more than powers of the error are taken away; rows: how many evaluations a lane
-    takes, one after the other; first_end: the first row in which a sequence ends; table: (ENDS +
-    8 rows,): substeps of the first and of the second sequence of each lane, their weights in the
-    result and in the error estimate, then for each row 1 where a first sequence ends, then the
-    same for the second ones.
+    takes, one after the other; ends: (rows,) whether a sequence ends in a row; table: substeps of
+    the first and of the second sequence of each lane, then for each row the weights of the
+    sequences that end there, in the result and in the error estimate, and 1 where such a sequence
+    is the first one of its lane.
     """
 
     stages: int
     rows: int
-    first_end: int
+    ends: np.ndarray
     table: np.ndarray
 
 
 @formula
-def combine(table, size, y, first, second, y_new, error):
-    """
-    Write the extrapolated state and the estimate of its error.
+def place_of(row, part):
+    """Return the place of a part of a row: WEIGHT, ERROR or ENDED."""
+    return _ROWS + _ROW_SIZE * row + part
 
-    table: of the Schedule; y: Cells, state at the start of the step; first, second: Cells of
-    Lanes, what the sequences of each lane have reached, less y; 0 where there is no second one.
-    """
-    w_1, w_2 = lanes_at(table, FIRST_WEIGHT), lanes_at(table, SECOND_WEIGHT)
-    e_1, e_2 = lanes_at(table, FIRST_ERROR), lanes_at(table, SECOND_ERROR)
+
+@formula
+def begin_sums(size, sums, errors):
+    """Let the sums of what sequences reach begin; Cells of Lanes."""
     for i in range(size):
-        y_new[i] = y[i] + total(fused(w_1, first[i], w_2 * second[i]))
-        error[i] = total(fused(e_1, first[i], e_2 * second[i]))
+        sums[i] = spread(0.0)
+        errors[i] = spread(0.0)
+
+
+@formula
+def add_ended(table, row, size, reached, sums, errors):
+    """
+    Add to the sums what the sequences have reached that end in a row.
+
+    reached: Cells of Lanes, less the state at the start of the step.
+    """
+    weight = lanes_at(table, place_of(row, WEIGHT))
+    error_weight = lanes_at(table, place_of(row, ERROR))
+    for i in range(size):
+        sums[i] = fused(weight, reached[i], sums[i])
+        errors[i] = fused(error_weight, reached[i], errors[i])
+
+
+@formula
+def combine(size, y, sums, errors, y_new, error):
+    """Write the extrapolated state and the estimate of its error; y: Cells, state at the start."""
+    for i in range(size):
+        y_new[i] = y[i] + total(sums[i])
+        error[i] = total(errors[i])
 
 
 def extrapolation_weights(substeps, power, stages):
@@ -96,18 +116,18 @@ def schedule(substeps, power, evaluations, stages=None):
     rows = max(_load(lane, evaluations) for lane in lanes)
     weights = extrapolation_weights(substeps, power, stages)
     lower = {substeps[0]: Fraction(0)} | extrapolation_weights(substeps[1:], power, stages - 1)
-    table = np.zeros(ENDS + 2 * COUNT * rows)
+    table, ends = np.zeros(_ROWS + _ROW_SIZE * rows), np.zeros(rows, dtype=np.bool_)
     # A lane without a sequence takes tiny substeps that nobody looks at.
     table[FIRST:FIRST + 2 * COUNT] = 1e3
     for i, lane in enumerate(lanes):
-        for place, n in enumerate(lane):
-            table[FIRST + COUNT * place + i] = n
-            table[FIRST_WEIGHT + COUNT * place + i] = weights[n]
-            table[FIRST_ERROR + COUNT * place + i] = weights[n] - lower[n]
-            end = _load(lane[:place + 1], evaluations) - 1
-            table[ENDS + COUNT * (place * rows + end) + i] = 1.0
-    return Schedule(stages, rows,
-                    min(evaluations(lane[0]) for lane in lanes if lane) - 1, table)
+        for number, n in enumerate(lane):
+            row = _load(lane[:number + 1], evaluations) - 1
+            ends[row] = True
+            table[FIRST + COUNT * number + i] = n
+            table[place_of(row, WEIGHT) + i] = weights[n]
+            table[place_of(row, ERROR) + i] = weights[n] - lower[n]
+            table[place_of(row, ENDED) + i] = number == 0
+    return Schedule(stages, rows, ends, table)
 
 
 def _load(lane, evaluations):

@@ -10,11 +10,12 @@ Deuflhard, SIAM Review 27 (1985) 505; Hairer, Wanner, Solving Ordinary Different
 IV.9.
 """
 
-from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
+from .lane_schedule import (add_ended, begin_sums, combine, ENDED, FIRST, place_of, schedule,
+                            SECOND)
 from .linearly_implicit import linearly_implicit_substep
 from .memory import lane_row
 from ..physics.jit import formula
-from ..physics.lanes import choose, COUNT, lanes_at, spread
+from ..physics.lanes import choose, lanes_at, spread
 
 SUBSTEPS = (1, 2, 3, 4, 5, 6, 7)
 
@@ -28,27 +29,27 @@ def stiff_schedule(substeps=SUBSTEPS, stages=None):
 def stiff(model, drive, plan, size, t, step, y, memory, y_new, error):
     """Take one step and estimate its error; arguments as for gragg."""
     here = lane_row(model.several, memory, 0, size)
-    first = lane_row(model.several, memory, 1, size)
-    second = lane_row(model.several, memory, 2, size)
+    sums = lane_row(model.several, memory, 1, size)
+    errors = lane_row(model.several, memory, 2, size)
     f = lane_row(model.several, memory, 3, size)
     responses = lane_row(model.several, memory, 4, size)
+    reached = lane_row(model.several, memory, 5, size)
     table = plan.table
     h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
     for i in range(size):
         here[i] = spread(y[i])
-        first[i] = spread(0.0)
-        second[i] = spread(0.0)
+    begin_sums(size, sums, errors)
     now = spread(t)
     for row in range(plan.rows):
         linearly_implicit_substep(model, drive, now, h, memory, here, f, responses)
         now = now + h
-        if row >= plan.first_end:
-            ended = lanes_at(table, ENDS + COUNT * row)
-            ended_second = lanes_at(table, ENDS + COUNT * (plan.rows + row))
+        if plan.ends[row]:
             for i in range(size):
-                first[i] = choose(ended, here[i] - y[i], first[i])
-                second[i] = choose(ended_second, here[i] - y[i], second[i])
+                reached[i] = here[i] - y[i]
+            add_ended(table, row, size, reached, sums, errors)
+            ended = lanes_at(table, place_of(row, ENDED))
+            for i in range(size):
                 here[i] = choose(ended, y[i], here[i])
             now = choose(ended, t, now)
             h = choose(ended, h_second, h)
-    combine(table, size, y, first, second, y_new, error)
+    combine(size, y, sums, errors, y_new, error)

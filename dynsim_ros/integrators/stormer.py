@@ -11,12 +11,14 @@ is small, and so is its rounding, which the extrapolation multiplies.
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.14.
 """
 
-from .lane_schedule import combine, ENDS, FIRST, schedule, SECOND
+from .lane_schedule import (add_ended, begin_sums, combine, ENDED, FIRST, place_of, schedule,
+                            SECOND)
 from .memory import lane_row
+from ..physics.advancing import Advancing
 from ..physics.fused import fused
 from ..physics.jit import formula
-from ..physics.lanes import choose, COUNT, lanes_at, spread
-from ..physics.motion import accelerations
+from ..physics.lanes import choose, lanes_at, spread
+from ..physics.motion import put_accelerations
 from ..physics.state import counts
 
 SUBSTEPS = (1, 2, 3, 4, 5, 6, 7)
@@ -28,10 +30,11 @@ def stormer_schedule(substeps=SUBSTEPS, stages=None):
 
 
 @formula
-def anchor_work(works, size, h, f, sums):
-    """Add h times the power of the anchors to their work (trapezoidal rule), if it is counted."""
+def anchor_work(works, size, h, f, work):
+    """Return the work of the anchors after a substep (trapezoidal rule), if it is counted."""
     if works is not None:
-        sums[size - 2] = sums[size - 2] + h * f[size - 2]
+        return work + h * f[size - 2]
+    return work
 
 
 @formula
@@ -45,25 +48,24 @@ def push_work(works, pushes, bodies, y, y_new):
 
 
 @formula
-def begin(works, bodies, size, h, y, rate, ended, d, x):
-    """Let lanes in which a sequence has ended begin another; x: states less y."""
+def begin(works, bodies, size, h, y, rate, ended, d, x, work):
+    """Let lanes in which a sequence has ended begin another; return the work of the anchors."""
     half = 0.5 * (h * h)
-    for i in range(3 * bodies):
-        d[i] = choose(ended, half * rate[3 * bodies + i], d[i])
-        x[i] = choose(ended, fused(h, y[3 * bodies + i], d[i]), x[i])
+    for i in range(3 * bodies, 6 * bodies):
+        d[i] = choose(ended, half * rate[i], d[i])
+        x[i] = choose(ended, fused(h, y[i], d[i]), x[i])
     if works is not None:
-        x[size - 2] = choose(ended, (0.5 * h) * rate[size - 2], x[size - 2])
+        return choose(ended, (0.5 * h) * rate[size - 2], work)
+    return work
 
 
 @formula
-def reach(works, bodies, size, h, per_h, x, d, f, out):
-    """Write what the sequences have reached, less y."""
-    n = 3 * bodies
-    for i in range(n):
-        out[i] = x[i]
-        out[n + i] = d[i] * per_h + (0.5 * h) * f[n + i]
+def reach(works, bodies, size, h, half_per_h, d, f, work, reached):
+    """Write what the sequences have reached, less y; reached: has x, and d before the substep."""
+    for i in range(3 * bodies, 6 * bodies):
+        reached[i] = half_per_h * (reached[i] + d[i])
     if works is not None:
-        out[size - 2] = x[size - 2] - (0.5 * h) * f[size - 2]
+        reached[size - 2] = work - (0.5 * h) * f[size - 2]
 
 
 @formula
@@ -71,47 +73,44 @@ def stormer(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
     """
     Take one step and estimate its error; arguments as for gragg.
 
-    Second sequences all end in the last row.
+    d, and the way x from the start of the step, lie where velocities are in a state.
     """
     x = lane_row(model.several, memory, 0, size)
     d = lane_row(model.several, memory, 1, size)
     f = lane_row(model.several, memory, 2, size)
-    first = lane_row(model.several, memory, 3, size)
+    sums = lane_row(model.several, memory, 3, size)
     reached = lane_row(model.several, memory, 4, size)
     state = lane_row(model.several, memory, 5, size)
+    errors = lane_row(model.several, memory, 6, size)
+    ahead = lane_row(model.several, memory, 7, size)
     bodies, _ = counts(model)
-    table = plan.table
+    n, table = 3 * bodies, plan.table
     h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
-    per_h = 1.0 / h
+    half_per_h = 0.5 / h
     for i in range(size):
-        first[i] = spread(0.0)
         reached[i] = spread(0.0)
         d[i] = spread(0.0)
         x[i] = spread(0.0)
         state[i] = spread(0.0)
-    begin(drive.works, bodies, size, h, y, rate, spread(1.0), d, x)
+        ahead[i] = spread(0.0)
+    begin_sums(size, sums, errors)
+    work = begin(drive.works, bodies, size, h, y, rate, spread(1.0), d, x, spread(0.0))
     now = t + h
     for row in range(plan.rows):
-        for i in range(3 * bodies):
-            state[i] = y[i] + x[i]
-        accelerations(model, drive, now, state, f)
-        anchor_work(drive.works, size, h, f, x)
-        if row >= plan.first_end:
-            ended = lanes_at(table, ENDS + COUNT * row)
-            reach(drive.works, bodies, size, h, per_h, x, d, f, reached)
-            for i in range(size):
-                first[i] = choose(ended, reached[i], first[i])
-        for i in range(3 * bodies):
-            d[i] = fused(h * h, f[3 * bodies + i], d[i])
-            x[i] = fused(h, y[3 * bodies + i], x[i]) + d[i]
+        for i in range(n):
+            state[i] = y[i] + x[n + i]
+            reached[i], reached[n + i] = x[n + i], d[n + i]
+            ahead[n + i] = fused(h, y[n + i], x[n + i])
+        put_accelerations(model, drive, now, state, f, Advancing(h * h, d, ahead, x))
+        work = anchor_work(drive.works, size, h, f, work)
         now = now + h
-        if row >= plan.first_end:
-            begin(drive.works, bodies, size, h_second, y, rate, ended, d, x)
+        if plan.ends[row]:
+            reach(drive.works, bodies, size, h, half_per_h, d, f, work, reached)
+            add_ended(table, row, size, reached, sums, errors)
+            ended = lanes_at(table, place_of(row, ENDED))
+            work = begin(drive.works, bodies, size, h_second, y, rate, ended, d, x, work)
             now = choose(ended, t + h_second, now)
-            per_h = choose(ended, 1.0 / h_second, per_h)
+            half_per_h = choose(ended, 0.5 / h_second, half_per_h)
             h = choose(ended, h_second, h)
-    second = lanes_at(table, ENDS + COUNT * (2 * plan.rows - 1))
-    for i in range(size):
-        reached[i] = choose(second, reached[i], 0.0)
-    combine(table, size, y, first, reached, y_new, error)
+    combine(size, y, sums, errors, y_new, error)
     push_work(drive.works, drive.pushes, bodies, y, y_new)

@@ -6,9 +6,8 @@ from fractions import Fraction
 
 from dynsim_ros.integrators import gragg, stiff, stormer
 from dynsim_ros.integrators.gragg import gragg_schedule
-from dynsim_ros.integrators.lane_schedule import (ENDS, extrapolation_weights, FIRST, FIRST_ERROR,
-                                                  FIRST_WEIGHT, SECOND, SECOND_ERROR,
-                                                  SECOND_WEIGHT)
+from dynsim_ros.integrators.lane_schedule import (ENDED, ERROR, extrapolation_weights, FIRST,
+                                                  place_of, SECOND, WEIGHT)
 from dynsim_ros.integrators.stiff import stiff_schedule
 from dynsim_ros.integrators.stormer import stormer_schedule
 import numpy as np
@@ -26,22 +25,22 @@ ALL += [('gragg', gragg.SUBSTEPS, len(gragg.SUBSTEPS)),
         ('stiff', stiff.SUBSTEPS, len(stiff.SUBSTEPS))]
 
 
+def part(plan, which):
+    """Return a part of all rows: (rows, 4)."""
+    return np.array([plan.table[place_of.py_func(row, which):][:4] for row in range(plan.rows)])
+
+
 def sequences(plan):
-    """Return {substeps: (weight, error weight, lane, place in the lane)}."""
+    """Return {substeps: (weight, error weight, lane, place in the lane, last row)}."""
     found = {}
-    for place, (substeps, weight, error) in enumerate((
-            (FIRST, FIRST_WEIGHT, FIRST_ERROR), (SECOND, SECOND_WEIGHT, SECOND_ERROR))):
-        for lane in range(4):
-            if plan.table[weight + lane] != 0.0:
-                n = plan.table[substeps + lane]
-                assert n not in found
-                found[n] = plan.table[weight + lane], plan.table[error + lane], lane, place
+    weights, errors, firsts = part(plan, WEIGHT), part(plan, ERROR), part(plan, ENDED)
+    for row, lane in np.argwhere(weights):
+        place = 0 if firsts[row, lane] else 1
+        n = plan.table[(FIRST, SECOND)[place] + lane]
+        assert n not in found
+        found[n] = weights[row, lane], errors[row, lane], lane, place, row
+    assert firsts.sum() == sum(place == 0 for _, _, _, place, _ in found.values())
     return found
-
-
-def ends(plan):
-    """Return (2, rows, 4): 1 where a first, a second sequence ends."""
-    return plan.table[ENDS:].reshape(2, plan.rows, 4)
 
 
 @pytest.mark.parametrize('rule, substeps, stages', ALL)
@@ -53,14 +52,13 @@ def test_every_sequence_is_in_one_lane_and_ends_where_its_last_row_is(rule, subs
     assert sorted(found) == list(substeps)
     lanes = np.zeros(4)
     for place in range(2):
-        for n, (_, _, lane, where) in found.items():
+        for n, (_, _, lane, where, row) in found.items():
             if where == place:
                 lanes[lane] += evaluations(n)
-                rows = ends(plan)[place, :, lane]
-                assert np.flatnonzero(rows).tolist() == [lanes[lane] - 1]
+                assert row == lanes[lane] - 1
     assert lanes.max() == plan.rows
-    assert ends(plan).sum() == len(substeps)
-    assert plan.first_end == np.flatnonzero(ends(plan)[0].any(axis=1))[0]
+    assert (set(np.flatnonzero(plan.ends).tolist())
+            == {int(row) for _, _, _, _, row in found.values()})
 
 
 @pytest.mark.parametrize('rule, substeps, stages', ALL)
