@@ -25,17 +25,20 @@ import numpy as np
 
 TYPES = {'none': CompressionType.NONE, 'lz4': CompressionType.LZ4, 'zstd': CompressionType.ZSTD}
 TICK_NS, ROUNDS = 1_000_000, 5
+# As many ticks at a time as a node at 1 kHz takes that nobody listens to.
+BURST = 15
 HEAD = """\
 # Recording
 
 `python benchmarks/recording.py`: the ticks of the default scene at 1 kHz, {rows} messages each.
-CPU is that of the whole process for {seconds:g} s of ticks at full speed, put the time of the
-thread that hands a tick over while ticks come at 1 kHz, the longest one of such a run of
-{seconds:g} s; medians of {rounds} runs and of 3 at 1 kHz.
+CPU is that of the whole process for {seconds:g} s of ticks at full speed, handed over one by one,
+as a node does that somebody listens to, or {burst} at a time, as one does that nobody listens to.
+put is the time of the thread that hands a tick over while ticks come at 1 kHz, the longest one of
+such a run of {seconds:g} s; medians of {rounds} runs and of 3 at 1 kHz.
 
-| compression | mcap.Writer, CPU µs a message | rows, CPU µs a message | ratio | put µs a tick | \
-longest put µs | bytes a message, mcap.Writer / rows |
-|---|---|---|---|---|---|---|
+| compression | mcap.Writer, CPU µs a message | rows one by one | ratio | rows {burst} ticks at a \
+time | ratio | put µs a tick | longest put µs | bytes a message, mcap.Writer / rows |
+|---|---|---|---|---|---|---|---|---|
 """
 
 
@@ -89,6 +92,19 @@ def by_rows(path, rows, blocks, compression):
     return time.process_time() - begin
 
 
+def by_bursts(path, rows, blocks, compression):
+    """Return likewise CPU [s] where several ticks are handed over at a time."""
+    wanted, blocks = rows.of(), np.array(blocks)
+    stamps = TICK_NS * np.arange(len(blocks))
+    begin = time.process_time()
+    recorder = new_recorder(path, rows, compression)
+    for first in range(0, len(blocks), BURST):
+        rows.blocks = blocks[first:first + BURST]
+        recorder.put_many_rows(rows, stamps[first:first + BURST], wanted)
+    recorder.close()
+    return time.process_time() - begin
+
+
 def puts_in_time(path, rows, blocks, compression):
     """Return the times of all puts [s] while ticks come at 1 kHz."""
     wanted, recorder, puts = rows.of(), new_recorder(path, rows, compression), []
@@ -106,17 +122,20 @@ def puts_in_time(path, rows, blocks, compression):
 
 def line(folder, rows, blocks, compression):
     """Return one line of the table."""
-    library, ours = [], []
+    library, ours, bursts = [], [], []
     for number in range(ROUNDS):
-        paths = [folder / f'{compression}_{number}_{name}' for name in ('a', 'b')]
+        paths = [folder / f'{compression}_{number}_{name}' for name in ('a', 'b', 'd')]
         library.append(by_library(paths[0], rows, blocks, compression))
         ours.append(by_rows(paths[1], rows, blocks, compression))
+        bursts.append(by_bursts(paths[2], rows, blocks, compression))
     puts = [puts_in_time(folder / f'{compression}_{i}_c', rows, blocks, compression)
             for i in range(3)]
     messages = len(blocks) * len(rows.channels)
-    theirs, mine = (np.median(part) / messages * 1e6 for part in (library, ours))
+    theirs, mine, together = (np.median(part) / messages * 1e6
+                              for part in (library, ours, bursts))
     sizes = [path.stat().st_size / messages for path in paths]
     return (f'| {compression} | {theirs:.2f} | {mine:.3f} | {theirs / mine:.0f} | '
+            f'{together:.3f} | {theirs / together:.0f} | '
             f'{np.median(puts) * 1e6:.2f} | {np.median(np.max(puts, axis=1)) * 1e6:.0f} | '
             f'{sizes[0]:.0f} / {sizes[1]:.0f} |')
 
@@ -127,7 +146,7 @@ def main():
     # As the node does: the writing thread gives the interpreter back sooner.
     sys.setswitchinterval(0.0005)
     rows, blocks = recorded_ticks(round(seconds * 1e9 / TICK_NS))
-    text = HEAD.format(rows=len(rows.channels), rounds=ROUNDS, seconds=seconds)
+    text = HEAD.format(rows=len(rows.channels), rounds=ROUNDS, seconds=seconds, burst=BURST)
     with tempfile.TemporaryDirectory() as folder:
         for compression in TYPES:
             text += line(Path(folder), rows, blocks, compression) + '\n'
