@@ -65,6 +65,8 @@ _FAST = 100.0
 MARGIN = 0.02
 # Rounding makes no error estimate larger than this.
 _ROUNDING = 1e-8
+# Of a step: an instant that lies not more than this behind it may be taken for its end.
+_ROUGHLY = 1e-15
 
 
 class Tableaux(NamedTuple):
@@ -172,33 +174,38 @@ def calm_for(bodies, rigid, rate, calm, before):
 
 
 @formula
-def place_in_step(grid, number, clock, per_half):
-    """
-    Return where an instant of the grid lies in the last step: -1: start, 1: end.
-
-    per_half: one over half the step's length.
-    """
-    instant = grid.first + number * grid.period - np.int64(clock[BASE]) * 1000000000
-    return 1.0 + (instant * 1e-9 - clock[END]) * per_half
+def since_base(time, base):
+    """Return an instant, given in [ns] since the beginning, in [s] since the clock's base."""
+    return (time - np.int64(base) * 1000000000) * 1e-9
 
 
 @formula
-def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y, rate,
-              y_new, rate_new, memory, dense):
+def place_in_step(grid, number, base, end, per_half):
+    """
+    Return where an instant of the grid lies in the last step: -1: start, 1: end.
+
+    base, end: of the clock; per_half: one over half the step's length.
+    """
+    return 1.0 + (since_base(grid.first + number * grid.period, base) - end) * per_half
+
+
+@formula
+def fill_grid(grid, tableaux, model, drive, bodies, rigid, size, base, end, step, clock, counted,
+              y, rate, y_new, rate_new, memory, dense):
     """Write the states of the grid that lie in the last step; build the dense output first."""
-    per_half = 2.0 / clock[STEP]
+    per_half = 2.0 / step
     first, done, count = grid.done[0], grid.done[0], grid.states.shape[0]
     while done < count:
-        s = place_in_step(grid, done, clock, per_half)
+        s = place_in_step(grid, done, base, end, per_half)
         if s > 1.0:
             break
         if clock[DENSE] == 0.0:
             counted[EVALUATIONS] += build_dense(
                 tableaux.stiff, tableaux.dop853, tableaux.radau, model, drive,
-                tableaux.dense, size, clock[BASE] + clock[END] - clock[STEP], clock[STEP], y,
-                rate, y_new, rate_new, memory, dense)
+                tableaux.dense, size, base + end - step, step, y, rate, y_new, rate_new, memory,
+                dense)
             clock[DENSE] = 1.0
-        s_next = place_in_step(grid, done + 1, clock, per_half)
+        s_next = place_in_step(grid, done + 1, base, end, per_half)
         if s_next <= 1.0 and done + 1 < count:
             write_two_states(size, dense, s, grid.states[done], s_next, grid.states[done + 1])
             done += 2
@@ -284,21 +291,23 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
     status = REACHED
     stalled = 0
     tolerance = max(MARGIN * tolerance, clock[FLOOR])
-    # What a next step waits for is multiplied, not divided.
+    # What a next step waits for is multiplied, not divided, and not in memory.
     per_tolerance, per_power = 1.0 / tolerance, 1.0 / power
+    base, reached, step = clock[BASE], clock[END], clock[STEP]
+    following, last_error = clock[NEXT], clock[LAST_ERROR]
     while True:
         # Asked here too: what is in fill_grid would be got ready at every step.
-        if clock[STEP] > 0.0 and place_in_step(grid, grid.done[0], clock,
-                                               2.0 / clock[STEP]) <= 1.0:
-            fill_grid(grid, tableaux, model, drive, bodies, rigid, size, clock, counted, y,
-                      rate, y_new, rate_new, memory, dense)
-        target = (limit - np.int64(clock[BASE]) * 1000000000) * 1e-9
-        if grid.done[0] >= grid.states.shape[0] or clock[END] >= target:
+        if step > 0.0 and since_base(grid.first + grid.done[0] * grid.period,
+                                     base) <= reached + _ROUGHLY * step:
+            fill_grid(grid, tableaux, model, drive, bodies, rigid, size, base, reached, step,
+                      clock, counted, y, rate, y_new, rate_new, memory, dense)
+        target = since_base(limit, base)
+        if grid.done[0] >= grid.states.shape[0] or reached >= target:
             break
         if budget <= 0:
             status = BUDGET_SPENT
             break
-        clock[WATCHED] = watched(watch, clock[NEXT], clock[WATCHED])
+        clock[WATCHED] = watched(watch, following, clock[WATCHED])
         if clock[WATCHED] >= (PATIENCE if watch > 0.0 else _SHORT_PATIENCE):
             clock[WATCHED] = 0.0
             status = SWITCH
@@ -314,23 +323,23 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
         before, h_before = math.inf, 1.0
         while not accepted and budget > 0:
             budget -= 1
-            h = min(clock[NEXT], _LONGEST)
-            end = clock[END] + h
+            h = min(following, _LONGEST)
+            end = reached + h
             # Not a last step that is much shorter than the others.
             if end + 1e-3 * h >= target:
                 end = target
             elif end + h > target:
-                end = 0.5 * (clock[END] + target)
+                end = 0.5 * (reached + target)
             natural = h
-            h = end - clock[END]
-            if not h > _SHORTEST * clock[END] + 1e-300:
+            h = end - reached
+            if not h > _SHORTEST * reached + 1e-300:
                 status = STEP_TOO_SHORT
                 break
-            t = clock[BASE] + clock[END]
+            t = base + reached
             counted[EVALUATIONS] += attempt(
                 tableaux.gragg, tableaux.stormer, tableaux.stiff, tableaux.dop853,
-                tableaux.radau, model, drive, size, t, h, y, rate, tolerance, clock[STEP], dense,
-                memory, y_new, error)
+                tableaux.radau, model, drive, size, t, h, y, rate, tolerance, step, dense, memory,
+                y_new, error)
             ratio = error_norm(bodies, rigid, y, error) * per_tolerance
             if not ratio < 1e30:
                 ratio = 1e30
@@ -343,7 +352,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
                 before, h_before = logarithm, h
                 accepted = stalled >= 2
             if accepted:
-                factor = step_factor(logarithm, clock[LAST_ERROR], per_power)
+                factor = step_factor(logarithm, last_error, per_power)
                 if ratio > 1.0:
                     counted[ROUNDED] += 1
                     # No shorter step would be better.
@@ -353,14 +362,14 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
                     # So long without effect: the estimates are rounding.
                     clock[SHRUNK] = 0.0
                     factor = _FASTEST
-                clock[LAST_ERROR] = logarithm
+                last_error = logarithm
                 longer = h * min(max(factor, _SLOWEST), _FASTEST)
                 # A step that was cut short says nothing against the length it would have had.
-                clock[NEXT] = max(longer, natural) if h < natural else longer
+                following = max(longer, natural) if h < natural else longer
                 counted[STEPS] += 1
             else:
                 factor = binary_power(_LOG_SAFETY - logarithm / power)
-                clock[NEXT] = h * min(max(factor, _SLOWEST), 0.7)
+                following = h * min(max(factor, _SLOWEST), 0.7)
                 counted[REJECTED] += 1
         if not accepted:
             if status == REACHED:
@@ -368,23 +377,24 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
             for i in range(size):
                 y_new[i] = y[i]
                 rate_new[i] = rate[i]
-            clock[STEP] = 0.0
+            step = 0.0
             break
         keep_stages(tableaux.radau, model, size, memory, dense)
         normalise(bodies, rigid, y_new)
         whole = math.floor(end)
-        clock[STEP] = h
-        clock[BASE] += whole
-        clock[END] = end - whole
+        step = h
+        base += whole
+        reached = end - whole
         if end == target:
             # The limit, with the rounding that it has seen from the new whole second.
-            clock[END] = (limit - np.int64(clock[BASE]) * 1000000000) * 1e-9
+            reached = since_base(limit, base)
         clock[DENSE] = 0.0
-        begin_rates(tableaux.stiff, model, drive, clock[BASE] + clock[END], y_new,
-                    rate_new)
+        begin_rates(tableaux.stiff, model, drive, base + reached, y_new, rate_new)
         counted[EVALUATIONS] += 1
         if calm > 0.0:
             clock[CALM] = calm_for(bodies, rigid, rate_new, calm, clock[CALM] + h)
+    clock[BASE], clock[END], clock[STEP] = base, reached, step
+    clock[NEXT], clock[LAST_ERROR] = following, last_error
     store(size, y, states[0])
     store(size, y_new, states[1])
     store(size, rate, states[2])

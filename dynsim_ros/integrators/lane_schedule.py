@@ -15,7 +15,7 @@ import numpy as np
 from . import rational
 from ..physics.fused import fused
 from ..physics.jit import formula
-from ..physics.lanes import COUNT, lanes_at, spread, total
+from ..physics.lanes import COUNT, lane, lanes_at, spread, total, totals
 
 # Places of the parts of a table; each has four numbers, one for each lane. The last ones are those
 # of a row, see place_of.
@@ -71,7 +71,14 @@ def add_ended(table, row, size, reached, sums, errors):
 @formula
 def combine(size, y, sums, errors, y_new, error):
     """Write the extrapolated state and the estimate of its error; y: Cells, state at the start."""
-    for i in range(size):
+    fours = size - size % COUNT
+    for i in range(0, fours, COUNT):
+        changes = totals(sums[i], sums[i + 1], sums[i + 2], sums[i + 3])
+        estimates = totals(errors[i], errors[i + 1], errors[i + 2], errors[i + 3])
+        for k in range(COUNT):
+            y_new[i + k] = y[i + k] + lane(changes, k)
+            error[i + k] = lane(estimates, k)
+    for i in range(fours, size):
         y_new[i] = y[i] + total(sums[i])
         error[i] = total(errors[i])
 
@@ -102,26 +109,26 @@ def schedule(substeps, power, evaluations, stages=None):
     """
     stages = len(substeps) if stages is None else stages
     lanes = [[] for _ in range(COUNT)]
-    for lane, n in zip(lanes, reversed(substeps)):
-        lane.append(n)
+    for each, n in zip(lanes, reversed(substeps)):
+        each.append(n)
     # The others end as late as they can: all in the same row, where their lengths allow it.
     for n in reversed(substeps[:-COUNT]):
-        free = [lane for lane in lanes if len(lane) == 1]
-        rows = max(_load(lane, evaluations) for lane in lanes)
-        fitting = [lane for lane in free if _load(lane, evaluations) + evaluations(n) <= rows]
+        free = [each for each in lanes if len(each) == 1]
+        rows = max(_load(each, evaluations) for each in lanes)
+        fitting = [each for each in free if _load(each, evaluations) + evaluations(n) <= rows]
         if fitting:
-            max(fitting, key=lambda lane: _load(lane, evaluations)).append(n)
+            max(fitting, key=lambda each: _load(each, evaluations)).append(n)
         else:
-            min(free, key=lambda lane: _load(lane, evaluations)).append(n)
-    rows = max(_load(lane, evaluations) for lane in lanes)
+            min(free, key=lambda each: _load(each, evaluations)).append(n)
+    rows = max(_load(each, evaluations) for each in lanes)
     weights = extrapolation_weights(substeps, power, stages)
     lower = {substeps[0]: Fraction(0)} | extrapolation_weights(substeps[1:], power, stages - 1)
     table, ends = np.zeros(_ROWS + _ROW_SIZE * rows), np.zeros(rows, dtype=np.bool_)
     # A lane without a sequence takes tiny substeps that nobody looks at.
     table[FIRST:FIRST + 2 * COUNT] = 1e3
-    for i, lane in enumerate(lanes):
-        for number, n in enumerate(lane):
-            row = _load(lane[:number + 1], evaluations) - 1
+    for i, each in enumerate(lanes):
+        for number, n in enumerate(each):
+            row = _load(each[:number + 1], evaluations) - 1
             ends[row] = True
             table[FIRST + COUNT * number + i] = n
             table[place_of(row, WEIGHT) + i] = weights[n]
@@ -130,8 +137,8 @@ def schedule(substeps, power, evaluations, stages=None):
     return Schedule(stages, rows, ends, table)
 
 
-def _load(lane, evaluations):
+def _load(substeps, evaluations):
     load = 0
-    for n in lane:
+    for n in substeps:
         load += evaluations(n)
     return load

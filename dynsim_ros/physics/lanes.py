@@ -164,6 +164,32 @@ def _total(lanes):
     return lambda lanes: _vector_total(lanes)
 
 
+def totals(a, b, c, d):
+    """Return Lanes of the total of each of four Lanes."""
+    return np.array([total(lanes) for lanes in (a, b, c, d)])
+
+
+@intrinsic
+def _vector_totals(typing_context, a, b, c, d):
+    def generate(context, builder, sig, args):
+        def shuffled(first, second, *numbers):
+            return builder.shuffle_vector(first, second, ir.Constant(
+                ir.VectorType(ir.IntType(32), COUNT), numbers))
+
+        def pairs(first, second):
+            # Sums of numbers 0 and 1, then of 2 and 3, of both in turns.
+            return builder.fadd(shuffled(first, second, 0, 4, 2, 6),
+                                shuffled(first, second, 1, 5, 3, 7))
+        low, high = pairs(*args[:2]), pairs(*args[2:])
+        return builder.fadd(shuffled(low, high, 0, 1, 4, 5), shuffled(low, high, 2, 3, 6, 7))
+    return LANES(LANES, LANES, LANES, LANES), generate
+
+
+@overload(totals)
+def _totals(a, b, c, d):
+    return lambda a, b, c, d: _vector_totals(a, b, c, d)
+
+
 def lane(lanes, i):
     """Return number i of the four; a number alone stands for all of them."""
     return lanes[i] if isinstance(lanes, np.ndarray) else lanes

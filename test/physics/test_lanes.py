@@ -4,7 +4,7 @@
 
 from dynsim_ros.physics.cells import lane_cells, number_cells
 from dynsim_ros.physics.jit import kernel
-from dynsim_ros.physics.lanes import choose, lane, lanes_at, root, spread, total
+from dynsim_ros.physics.lanes import choose, lane, lanes_at, root, spread, total, totals
 import numpy as np
 import pytest
 
@@ -61,6 +61,9 @@ def operate(x, y, mask_row, s, memory, rows, sums):
         sums[i // 4, 0] = numbers[1]
         sums[i // 4, 1] = root(s)
         sums[i // 4, 2] = number_views[2]
+        four = totals(a, b, a - b, a * b)
+        for k in range(4):
+            sums[i // 4, 3 + k] = lane(four, k)
 
 
 def expected(x, y, mask, s):
@@ -68,11 +71,16 @@ def expected(x, y, mask, s):
     rows = [x + y, x - y, x * y, x / y, x + s, s - x, x * s, s / x, -x, np.sqrt(x),
             np.where(mask != 0, x, y), np.where(mask != 0, s, y), np.full_like(x, s),
             x if s > 0 else np.full_like(x, s), x, x + y]
-    fours = x.reshape(-1, 4)
     # views[1] begins at memory[8], as number_views do
-    sums = [(fours[:, 0] + fours[:, 1]) + (fours[:, 2] + fours[:, 3]),
-            np.full(len(fours), np.sqrt(s)), (x + y)[2::4]]
+    sums = [in_pairs(x), np.full(len(x) // 4, np.sqrt(s)), (x + y)[2::4], in_pairs(x), in_pairs(y),
+            in_pairs(x - y), in_pairs(x * y)]
     return np.array(rows), np.array(sums).T
+
+
+def in_pairs(x):
+    """Return the sums of each four numbers."""
+    fours = x.reshape(-1, 4)
+    return (fours[:, 0] + fours[:, 1]) + (fours[:, 2] + fours[:, 3])
 
 
 def bits(array):
@@ -85,7 +93,7 @@ def test_operations(s):
     x, y = (np.concatenate([numbers, odd]) for numbers, odd in zip(
         NUMBERS, (np.repeat(ODD, len(ODD)), np.tile(ODD, len(ODD)))))
     mask = np.tile([0.0, 1.0, -0.0, np.nan, 5e-324], len(x))[:len(x)]
-    rows, sums = np.full((len(ROWS), len(x)), 7.0), np.full((len(x) // 4, 3), 7.0)
+    rows, sums = np.full((len(ROWS), len(x)), 7.0), np.full((len(x) // 4, 7), 7.0)
     operate(x, y, mask, s, np.zeros(64), rows, sums)
     with np.errstate(all='ignore'):
         by_numpy = expected(x, y, mask, s)
@@ -97,13 +105,13 @@ def test_operations(s):
 def test_plain_python_does_the_same():
     x, y, s = *NUMBERS[:2], 0.7
     mask = np.tile([0.0, 1.0], 8)
-    rows, sums = np.zeros((len(ROWS), 16)), np.zeros((4, 3))
+    rows, sums = np.zeros((len(ROWS), 16)), np.zeros((4, 7))
     for i in range(0, 16, 4):
         a, b, m = lanes_at(x, i), lanes_at(y, i), lanes_at(mask, i)
         found = [a + b, a - b, a * b, a / b, a + s, s - a, a * s, s / a, -a, root(np.abs(a)),
                  choose(m, a, b), choose(m, s, b), spread(s), a, a, a + b]
         rows[:, i:i + 4] = found
-        sums[i // 4] = total(a), root(s), lane(a + b, 2)
+        sums[i // 4] = total(a), root(s), lane(a + b, 2), *totals(a, b, a - b, a * b)
     with np.errstate(invalid='ignore'):
         by_numpy = expected(x, y, mask, s)
     by_numpy[0][9] = np.sqrt(np.abs(x))
