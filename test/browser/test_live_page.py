@@ -58,15 +58,14 @@ def drag_until(page, client, take, is_answered):
     take: does it; a browser that is too busy to have drawn it there yet has no hold of it.
     """
     try:
-        for _ in range(4):
+        for left in reversed(range(5)):
             take()
             try:
-                client.wait(is_answered, timeout=12.0)
-                return
+                return client.wait(is_answered, timeout=12.0)
             except AssertionError:
+                if not left:
+                    raise
                 page.mouse.up()
-        take()
-        client.wait(is_answered, timeout=12.0)
     finally:
         page.mouse.up()
 

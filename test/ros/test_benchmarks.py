@@ -59,6 +59,7 @@ def test_what_is_lost_is_told(discovery, measuring):
         subscriber.begin(4.0, 1000)
         time.sleep(0.5)
         os.kill(subscriber.pid, signal.SIGSTOP)
+        # 2500 messages are published meanwhile; 1000 are kept, and the sockets hold some more.
         time.sleep(2.5)
         os.kill(subscriber.pid, signal.SIGCONT)
         faults = soak.faults([subscriber.end()], 4.0)
