@@ -83,8 +83,8 @@ class ByHand:
             found.append(y.copy())
         return np.array(found)
 
-    def dense(self, t, h, y, fractions):
-        """Return the states at fractions of a step, from the method's dense output."""
+    def dense(self, t, h, y, fractions, stages=6):
+        """Return the states at fractions of a step, from the dense output; stages: of that."""
         y_new, _ = self.step(t, h, y)
         normalise(self.bodies, self.rigid, y_new)
         coefficients = np.zeros(DENSE_SIZE * len(y))
@@ -96,7 +96,7 @@ class ByHand:
             dense_radau(self.model, radau_table(), self.size, y, self.memory, coefficients)
         else:
             build, table = {'dop853': (dense_dop853, self.plan)}.get(
-                self.method, (dense_explicit, explicit_table()))
+                self.method, (dense_explicit, explicit_table(stages)))
             build(*given, table, self.size, t, h, y, self.rates(t, y), y_new,
                   self.rates(t + h, y_new), self.memory, coefficients)
         out = np.tile(y, (len(fractions), 1))

@@ -41,7 +41,7 @@ class AutoSteps(Walk):
 
     def __init__(self, explicit, stiff, cost, tolerance, model, drive, size, springs):
         self._cost = cost
-        held_back = held_back_step(model)
+        held_back = held_back_step(model, explicit.reach)
         self.explicit = AdaptiveSteps(explicit, tolerance, model, drive, size, springs,
                                       held_back if held_back < math.inf else 0.0)
         self._new_stiff = lambda: AdaptiveSteps(stiff(), tolerance, model, drive, size, springs)

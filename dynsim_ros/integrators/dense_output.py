@@ -44,7 +44,6 @@ _WEIGHTS = COUNT * _FOURS
 # They lie on both sides of the middle; these are the ones behind it.
 _EXPLICIT_NODES = [Fraction(s, 1000) for s in (240, 675)]
 _STIFF_NODES = [Fraction(s, 100) for s in (16, 48, 74, 92)]
-_EXPLICIT_STAGES = 6
 # How far before and behind the ends rates are compared, in steps: what the comparison leaves out
 # goes as its square, what rounding makes of it as one over it.
 _NEARBY = 2.0 ** -15
@@ -66,9 +65,10 @@ def _weights(values, derivatives, seconds, parity):
     return [[weight / 2 for weight in column] for column in zip(*inverse(rows))]
 
 
-# Places of the parts of the tables: the instants, the weights of the sequences, how near rates are
-# compared, then the weights of the data: of all in even powers, then of all in odd ones.
-_TARGETS, _SEQUENCES, _NEAR, _DATA = 0, 2 * COUNT, 4 * COUNT, 5 * COUNT
+# Places of the parts of the tables: the instants, the weights of the sequences, how many these are
+# after an explicit step, how near rates are compared, then the weights of the data: of all in even
+# powers, then of all in odd ones.
+_TARGETS, _SEQUENCES, _STAGES, _NEAR, _DATA = 0, 2 * COUNT, 4 * COUNT - 1, 4 * COUNT, 5 * COUNT
 # Data of an explicit step: values at the end and at the nodes, rates there, changes of the rates
 # at the end; of a stiff one: values at the end and at the nodes.
 _EXPLICIT_DATA, _STIFF_DATA = 7, 5
@@ -86,12 +86,13 @@ def _table(sequences, *known):
 
 
 @lru_cache
-def explicit_table():
-    """Return the packed table of the interpolation after an explicit step."""
+def explicit_table(stages=6):
+    """Return the packed table of the interpolation after an explicit step; stages: 7 at most."""
     places, end = [Fraction(1), *_EXPLICIT_NODES], Fraction(1)
-    substeps = list(range(2, 2 * _EXPLICIT_STAGES + 1, 2))
-    weights = extrapolation_weights(substeps, 2, _EXPLICIT_STAGES)
+    substeps = list(range(2, 2 * stages + 1, 2))
+    weights = extrapolation_weights(substeps, 2, stages)
     table = _table([weights[n] for n in substeps], places, places, [end])
+    table[_STAGES] = stages
     # In fractions of the step: on from the start, back from the end to behind the middle.
     ahead = [(1 - s) / 2 for s in _EXPLICIT_NODES]
     table[:COUNT] = [*ahead, *(-fraction for fraction in ahead)]
@@ -164,7 +165,7 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
         reached[i] = base[i]
     whole, arm = with_arm(model), arm_of_state(model, base)
     reach = reach_of_state(model, drive, start, base, arm)
-    for stage in range(_EXPLICIT_STAGES):
+    for stage in range(int(table[_STAGES])):
         h = way / (2.0 * (stage + 1))
         for i in range(size):
             a[i] = spread(0.0)
@@ -224,7 +225,8 @@ def dense_explicit(model, drive, table, size, t, step, y, rate, y_new, rate_new,
                                  behind + before, sums)
             put_powers(size, dense, four, i, sums)
         dense[i] += y[i]
-    return _EXPLICIT_STAGES * _EXPLICIT_STAGES + 2
+    stages = int(table[_STAGES])
+    return stages * stages + 2
 
 
 @formula

@@ -8,12 +8,12 @@ error has even powers of h only, so that each sequence raises the order by two.
 
 W. B. Gragg, SIAM J. Numer. Anal. 2 (1965) 384; Hairer, Norsett, Wanner, Solving Ordinary
 Differential Equations I, II.9. That the sequences are independent is as old; in the four lanes
-the step of order 14 takes as long as the 21 evaluations of its longest sequence. The shortest
-sequences, of 2 and 4 substeps, would not shorten that, and are worth less than longer ones.
+a step takes as long as the evaluations of its longest sequence. Short sequences would not shorten
+that, and are worth less than longer ones.
 """
 
 from .lane_schedule import (add_ended, begin_sums, combine, ENDED, FIRST, place_of, schedule,
-                            SECOND)
+                            SECOND, Sequences)
 from .memory import lane_row
 from ..physics.advancing import Advancing
 from ..physics.arms import (arm_of_state, begin_arm, put_arm, restart_arm, step_arm,
@@ -23,12 +23,16 @@ from ..physics.lanes import choose, lanes_at, spread
 from ..physics.motion import put_rates
 from ..physics.reach import put_reach, reach_of_state
 
-SUBSTEPS = (6, 8, 10, 12, 14, 16, 22)
-# Of a lower order, whose weights let a quarter of the rounding through.
-FINE_SUBSTEPS, FINE_STAGES = (8, 10, 12, 14, 16, 18, 26), 6
+# Found by trying all that fit into the lanes, on spheres, chains and webs.
+SEQUENCES = (
+    Sequences(2e-5, (10, 16, 22, 24, 26), share=2.0, reach=4.0),
+    Sequences(2e-9, (6, 8, 10, 12, 14, 16, 22)),
+    Sequences(3e-11, (6, 8, 10, 12, 14, 16, 22), dense_stages=6),
+    # More of them than stages: their weights let a quarter of the rounding through.
+    Sequences(0.0, (8, 10, 12, 14, 16, 18, 26), 6, dense_stages=6))
 
 
-def gragg_schedule(substeps=SUBSTEPS, stages=None):
+def gragg_schedule(substeps=SEQUENCES[1].substeps, stages=None):
     """Return the Schedule of the method of order 2 stages; see lane_schedule.schedule."""
     return schedule(substeps, 2, lambda n: n - 1, stages)
 

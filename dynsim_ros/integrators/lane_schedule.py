@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import rational
+from .stiffness import EXPLICIT_REACH
 from ..physics.fused import fused
 from ..physics.jit import formula
 from ..physics.lanes import COUNT, lane, lanes_at, spread, total, totals
@@ -21,6 +22,22 @@ from ..physics.lanes import COUNT, lane, lanes_at, spread, total, totals
 # of a row, see place_of.
 FIRST, SECOND, _ROWS = 0, COUNT, 2 * COUNT
 WEIGHT, ERROR, ENDED, _ROW_SIZE = 0, COUNT, 2 * COUNT, 3 * COUNT
+
+
+class Sequences(NamedTuple):
+    """
+    The sequences that an extrapolation has where the tolerance is not below `least`.
+
+    substeps, stages: see schedule; dense_stages: of the dense output, see explicit_table; share,
+    reach: see methods.Adaptive.
+    """
+
+    least: float
+    substeps: tuple
+    stages: int | None = None
+    dense_stages: int = 5
+    share: float = 1.0
+    reach: float = EXPLICIT_REACH
 
 
 class Schedule(NamedTuple):
@@ -97,6 +114,11 @@ def extrapolation_weights(substeps, power, stages):
     factors = [row[0] for row in rational.inverse(moments)]
     return {n: rational.total(factor * Fraction(n, n ** (power * j))
                               for j, factor in enumerate(factors)) for n in substeps}
+
+
+def sequences_for(tolerance, several):
+    """Return the first ones of several Sequences that are for a tolerance."""
+    return next(each for each in several if tolerance >= each.least)
 
 
 def schedule(substeps, power, evaluations, stages=None):

@@ -11,8 +11,9 @@ from . import (dop853_tableau, explicit_euler, explicit_euler_axis_angle, leapfr
                linearly_implicit_euler, radau_tableau, rk4, semi_implicit_euler)
 from .adaptive import Tableaux
 from .dense_output import explicit_table, radau_table, stiff_table
-from .gragg import FINE_STAGES, FINE_SUBSTEPS, gragg_schedule
+from .gragg import gragg_schedule
 from .stiff import stiff_schedule
+from .stiffness import EXPLICIT_REACH
 from .stormer import stormer_schedule
 from ..scene import did_you_mean, SceneError
 
@@ -22,12 +23,14 @@ class Adaptive(NamedTuple):
     What an adaptive method computes with.
 
     power: of the step in its error estimate; share: of the tolerance, for an estimate that is
-    nearer to the error than those of the others are.
+    nearer to the error than those of the others are, or farther from it; reach: steps of an
+    explicit method that are longer than this over the fastest rate may be held back by stability.
     """
 
     tableaux: Tableaux
     power: float
     share: float = 1.0
+    reach: float = EXPLICIT_REACH
 
 
 @dataclass(frozen=True)
@@ -51,8 +54,8 @@ class Method:
 
 METHODS = {method.name: method for method in (
     Method('auto', None, 'closed forms, extrapolation or stiff, whatever the motion asks for'),
-    Method('extrapolation', 14, 'error-controlled; extrapolated midpoint rule (order 12 where '
-           'rounding counts; for particles on springs without losses: rule of Störmer)'),
+    Method('extrapolation', 14, 'error-controlled; extrapolated midpoint rule, order 10, 14 or 12 '
+           'by the tolerance (rule of Störmer, 10 or 12, for particles without losses)'),
     Method('stiff', 7,
            'error-controlled; extrapolated linearly implicit Euler, for stiff springs'),
     Method('radau', 15, 'error-controlled; Radau IIA with 8 stages, for stiff springs, exact'),
@@ -80,28 +83,23 @@ def method_named(name):
 
 
 @lru_cache
-def extrapolation():
-    """Return the Adaptive of Gragg's rule."""
-    return _gragg(gragg_schedule())
+def gragg_extrapolation(sequences):
+    """Return the Adaptive of Gragg's rule with some Sequences."""
+    plan = gragg_schedule(sequences.substeps, sequences.stages)
+    return _extrapolation(Tableaux(plan, None, None, None, None,
+                                   explicit_table(sequences.dense_stages)), plan, sequences)
 
 
 @lru_cache
-def fine_extrapolation():
-    """Return the Adaptive of Gragg's rule for tolerances at which rounding counts."""
-    return _gragg(gragg_schedule(FINE_SUBSTEPS, FINE_STAGES))
+def stormer_extrapolation(sequences):
+    """Return the Adaptive of Störmer's rule with some Sequences."""
+    plan = stormer_schedule(sequences.substeps, sequences.stages)
+    return _extrapolation(Tableaux(None, plan, None, None, None,
+                                   explicit_table(sequences.dense_stages)), plan, sequences)
 
 
-def _gragg(plan):
-    return Adaptive(Tableaux(plan, None, None, None, None, explicit_table()),
-                    2.0 * plan.stages - 1.0)
-
-
-@lru_cache
-def stormer_extrapolation():
-    """Return the Adaptive of Störmer's rule."""
-    plan = stormer_schedule()
-    return Adaptive(Tableaux(None, plan, None, None, None, explicit_table()),
-                    2.0 * plan.stages - 1.0, share=0.5)
+def _extrapolation(tableaux, plan, sequences):
+    return Adaptive(tableaux, 2.0 * plan.stages - 1.0, sequences.share, sequences.reach)
 
 
 @lru_cache

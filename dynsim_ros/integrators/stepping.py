@@ -2,19 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which way a motion is advanced."""
 
-from . import methods
+from . import gragg, methods, stormer
 from .adaptive_steps import AdaptiveSteps
 from .auto_motion import AutoMotion
 from .auto_steps import AutoSteps
 from .fixed_steps import FixedSteps
+from .lane_schedule import sequences_for
 from .stiffness import drag_rate, spring_rates
 
 # From this tolerance on the linearly implicit method needs no more steps than collocation, whose
 # steps cost several times as much; the cost of these grows with the cube of the number of springs,
 # and their iteration does not know of the drag.
 _COARSE, _MANY = 3e-4, 4
-# Below this tolerance rounding counts.
-_FINE = 3e-11
 
 
 def needs_no_velocity(model):
@@ -26,8 +25,8 @@ def needs_no_velocity(model):
 def explicit_method(model, tolerance):
     """Return the Adaptive that extrapolation means for a model."""
     if needs_no_velocity(model):
-        return methods.stormer_extrapolation()
-    return methods.fine_extrapolation() if tolerance < _FINE else methods.extrapolation()
+        return methods.stormer_extrapolation(sequences_for(tolerance, stormer.SEQUENCES))
+    return methods.gragg_extrapolation(sequences_for(tolerance, gragg.SEQUENCES))
 
 
 def stiff_method(model, springs, tolerance):

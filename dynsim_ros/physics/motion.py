@@ -147,13 +147,14 @@ def accelerations(model, drive, t, y, out):
 def put_rates(model, drive, t, y, forces, out):
     """Write dy/dt to out, each number once; forces: Cells to use, which may be those of out."""
     bodies, rigid = counts(model)
-    put_accelerations(model, drive, t, y, forces, out)
+    # First, because forces take longer to come.
     for i in range(3 * bodies):
         out[i] = y[velocity_at(bodies) + i]
     for i in range(rigid):
         q = quaternion_at(bodies) + 4 * i
         omega = at(y, omega_at(bodies, rigid) + 3 * i)
         put_quaternion(out, q, quaternion_rate_world(quaternion(y, q), omega))
+    put_accelerations(model, drive, t, y, forces, out)
 
 
 @formula

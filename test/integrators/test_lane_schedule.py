@@ -19,10 +19,10 @@ RULES = {'gragg': (gragg_schedule, lambda n: n - 1, 2),
          'stiff': (stiff_schedule, lambda n: n, 1)}
 ALL = [('gragg', range(2, 2 * k + 1, 2), k) for k in range(2, 9)]
 ALL += [(rule, range(1, k + 1), k) for rule in ('stormer', 'stiff') for k in range(2, 9)]
-ALL += [('gragg', gragg.SUBSTEPS, len(gragg.SUBSTEPS)),
-        ('gragg', gragg.FINE_SUBSTEPS, gragg.FINE_STAGES),
-        ('stormer', stormer.SUBSTEPS, len(stormer.SUBSTEPS)),
-        ('stiff', stiff.SUBSTEPS, len(stiff.SUBSTEPS))]
+ALL += [(rule, each.substeps, each.stages or len(each.substeps))
+        for rule, sequences in (('gragg', gragg.SEQUENCES), ('stormer', stormer.SEQUENCES))
+        for each in sequences]
+ALL += [('stiff', stiff.SUBSTEPS, len(stiff.SUBSTEPS))]
 
 
 def part(plan, which):

@@ -94,7 +94,7 @@ def test_every_scene(name):
 def test_while_auto_is_stiff_or_tries_to_be():
     scene = load('S3q')[0]
     with nothing_compiled():
-        simulator = Simulator(scene, tolerance=1e-2, rate=500.0)
+        simulator = Simulator(scene, tolerance=1e-2, rate=300.0)
         taken = assert_goes_on(simulator, [(9, PushBody('ball', (0.0, 1.0, 0.0)))], 11, (5, 8))
     steps = [json.loads(text)['steps'] for text in taken.values()]
     at_work = [memory['steps']['is_stiff'] for memory in steps if memory]

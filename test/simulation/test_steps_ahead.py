@@ -75,7 +75,7 @@ def test_a_method_that_goes_over_to_the_stiff_one_and_back():
     found = []
     with nothing_compiled():
         for ahead in False, True:
-            simulator, kept = Simulator(load('S3q')[0], tolerance=1e-2, rate=500.0), []
+            simulator, kept = Simulator(load('S3q')[0], tolerance=1e-2, rate=300.0), []
             for tick in range(12):
                 if tick == 9:
                     simulator.apply(PushBody('ball', (0.0, 1.0, 0.0)))
