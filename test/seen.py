@@ -10,6 +10,14 @@ import numpy as np
 DESKTOP, PHONE = {'width': 1100, 'height': 640}, {'width': 390, 'height': 844}
 
 
+def read_news(page):
+    """Close what a page says at its start: that there is no graphics card is no news."""
+    news = page.get_by_role('alert')
+    news.get_by_role('button').click()
+    # what fades away is not for axe to judge
+    news.wait_for(state='detached')
+
+
 def picture(page, part='canvas[data-engine]'):
     """Return a part of a page, the 3-D view: (height, width, 3) numbers from 0 to 255."""
     box = page.locator(part).first.bounding_box()

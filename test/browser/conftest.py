@@ -5,6 +5,7 @@
 from chromium import chromium
 from live_fixtures import connect, discovery, start
 import pytest
+from seen import read_news
 from view_fixtures import bag, view
 
 __all__ = ['bag', 'connect', 'discovery', 'start', 'view']
@@ -43,10 +44,7 @@ def open_page(browser):
         for event in ('request', 'websocket'):
             page.on(event, lambda request: fetched.append(request.url))
         page.goto(url)
-        # that there is no graphics card is no news; what fades away is not for axe to judge
-        news = page.get_by_role('alert')
-        news.get_by_role('button').click()
-        news.wait_for(state='detached')
+        read_news(page)
         return page
 
     yield open_page
