@@ -85,21 +85,20 @@ def method_named(name):
 @lru_cache
 def gragg_extrapolation(sequences):
     """Return the Adaptive of Gragg's rule with some Sequences."""
-    plan = gragg_schedule(sequences.substeps, sequences.stages)
-    return _extrapolation(Tableaux(plan, None, None, None, None,
-                                   explicit_table(sequences.dense_stages)), plan, sequences)
+    return _extrapolation('gragg', gragg_schedule, sequences)
 
 
 @lru_cache
 def stormer_extrapolation(sequences):
     """Return the Adaptive of Störmer's rule with some Sequences."""
-    plan = stormer_schedule(sequences.substeps, sequences.stages)
-    return _extrapolation(Tableaux(None, plan, None, None, None,
-                                   explicit_table(sequences.dense_stages)), plan, sequences)
+    return _extrapolation('stormer', stormer_schedule, sequences)
 
 
-def _extrapolation(tableaux, plan, sequences):
-    return Adaptive(tableaux, 2.0 * plan.stages - 1.0, sequences.share, sequences.reach)
+def _extrapolation(rule, schedule, sequences):
+    plan = schedule(sequences.substeps, sequences.stages)
+    tableaux = Tableaux(None, None, None, None, None, explicit_table(sequences.dense_stages))
+    return Adaptive(tableaux._replace(**{rule: plan}), 2.0 * plan.stages - 1.0, sequences.share,
+                    sequences.reach)
 
 
 @lru_cache

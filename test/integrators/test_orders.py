@@ -54,6 +54,7 @@ EVEN = {k: (range(2, 2 * k + 1, 2),) for k in (2, 3, 4)}
 ALL = {k: (range(1, k + 1),) for k in (2, 3, 4)}
 COARSE, _, _, FINE = [each[1:3] for each in gragg.SEQUENCES]
 FINE_STORMER = stormer.SEQUENCES[1][1:3]
+SEVEN = (range(1, 8),)
 MORE = ((2, 4, 6, 8, 10), 3)
 
 
@@ -100,6 +101,7 @@ def test_order_of_steps(method, sequences, duration, counts, order):
 @pytest.mark.parametrize('method, sequences, counts, order', [
     ('gragg', COARSE, (2, 4), 10), ('gragg', (), (2, 4), 14), ('gragg', FINE, (2, 4), 12),
     ('stormer', (), (2, 4), 10), ('stormer', FINE_STORMER, (2, 4), 12),
+    ('stormer', SEVEN, (2, 4), 14),
     ('radau', (), (4, 6), 15)])
 def test_order_of_the_highest_ones(method, sequences, counts, order):
     found = orders(method, sequences, 1.2, counts)
@@ -113,6 +115,7 @@ def test_order_of_the_highest_ones(method, sequences, counts, order):
     ('stormer', ALL[3], (0.08, 0.04, 0.02), 5), ('stormer', ALL[4], (0.16, 0.08, 0.06), 7),
     ('stormer', (), (0.9, 0.7, 0.5, 0.35), 9),
     ('stormer', FINE_STORMER, (1.2, 0.9, 0.7, 0.5, 0.35), 11),
+    ('stormer', SEVEN, (0.7, 0.5, 0.35, 0.25), 13),
     ('stiff', ALL[3], (0.01, 0.005, 0.0025), 3), ('stiff', ALL[4], (0.01, 0.005, 0.0025), 4),
     ('stiff', (), (0.04, 0.02, 0.01), 7), ('dop853', (), (0.1, 0.07, 0.05), 8),
     ('radau', (), (0.3, 0.2, 0.1), 8)])
@@ -128,14 +131,14 @@ def test_the_loop_knows_the_orders_of_the_error_estimates():
     assert [each().power for each in (methods.stiff, methods.dop853, methods.radau)] == [7, 8, 8]
 
 
-@pytest.mark.parametrize('method, lengths, stages, order', [
-    ('gragg', (0.25, 0.2, 0.15), 6, 13), ('gragg', (0.4, 0.3, 0.2), 5, 11),
-    ('stormer', (0.6, 0.4, 0.3), 5, 10),
-    ('stiff', (0.04, 0.03, 0.02), 7, 8), ('dop853', (0.2, 0.1, 0.05), 7, 8),
-    ('radau', (0.3, 0.2, 0.1), 7, 8)])
-def test_order_of_the_dense_output(method, lengths, stages, order):
+@pytest.mark.parametrize('method, sequences, lengths, stages, order', [
+    ('gragg', (), (0.25, 0.2, 0.15), 6, 13), ('gragg', (), (0.4, 0.3, 0.2), 5, 11),
+    ('stormer', SEVEN, (0.6, 0.4, 0.3), 6, 13), ('stormer', (), (0.6, 0.4, 0.3), 5, 10),
+    ('stiff', (), (0.04, 0.03, 0.02), 7, 8), ('dop853', (), (0.2, 0.1, 0.05), 7, 8),
+    ('radau', (), (0.3, 0.2, 0.1), 7, 8)])
+def test_order_of_the_dense_output(method, sequences, lengths, stages, order):
     fractions = (0.07, 0.2, 0.35, 0.5, 0.65, 0.8, 0.93)
-    hand, found = ByHand(scene_of(method), method), []
+    hand, found = ByHand(scene_of(method), method, sequences), []
     for h in lengths:
         states = hand.dense(0.0, h, hand.start, fractions, stages)
         motions = exact(method, *(fraction * h for fraction in fractions))
