@@ -45,6 +45,8 @@ setup(
     # ROS itself is no requirement: a sourced installation brings it, else the extra 'ros'.
     install_requires=[
         'PyYAML>=5.4,<7',
+        # Quicker checksums of bags, where it is compiled.
+        'isal>=1,<2; platform_machine == "x86_64" or platform_machine == "aarch64"',
         'lz4>=3,<5',
         'mcap>=1.5,<2',
         'numba>=0.59,<1',

@@ -3,7 +3,7 @@
 """
 What recording costs: rows of ticks in a thread, beside mcap.Writer with the same compression.
 
-Usage: python benchmarks/recording.py [SECONDS] (default 10). Both record the same ticks of the
+Usage: python benchmarks/recording.py [SECONDS] (default 40). Both record the same ticks of the
 default scene. CPU: of the whole process, per message, without building the messages; put: what
 the putting thread takes for a tick at 1 kHz, and the longest of all. Writes recording.md.
 """
@@ -142,7 +142,7 @@ def line(folder, rows, blocks, compression):
 
 def main():
     """Measure, print and write the table."""
-    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
+    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 40.0
     # As the node does: the writing thread gives the interpreter back sooner.
     sys.setswitchinterval(0.0005)
     rows, blocks = recorded_ticks(round(seconds * 1e9 / TICK_NS))

@@ -7,10 +7,11 @@ from __future__ import annotations
 from io import BytesIO
 import struct
 from typing import NamedTuple
-import zlib
 
 import lz4.frame
 import zstandard
+
+from .checksum import crc32
 
 # Chunks that hold more are not opened [bytes]; usual ones hold about a million.
 LARGEST_CHUNK = 256 * 1024 * 1024
@@ -63,7 +64,7 @@ def open_chunk(content: bytes) -> bytes:
     if head.start + head.length != len(content):
         raise DamagedChunk('its head does not fit')
     data = decompress(head.compression, content[head.start:], head.size)
-    if head.crc and zlib.crc32(data) != head.crc:
+    if head.crc and crc32(data) != head.crc:
         raise DamagedChunk('its checksum is wrong')
     return data
 

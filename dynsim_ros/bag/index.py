@@ -10,13 +10,13 @@ from io import BytesIO
 import os
 import struct
 from typing import BinaryIO, NamedTuple
-import zlib
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema, Statistics
 
+from .checksum import crc32
 from .chunk_content import DamagedChunk, open_chunk
 from .records import HEAD, MAGIC, MESSAGE, Record, walk
 
@@ -119,7 +119,7 @@ def _summary_start(stream, size):
         rest, crc = size - len(MAGIC) - 4 - start, 0
         while rest:
             portion = stream.read(min(rest, _PORTION))
-            rest, crc = rest - len(portion), zlib.crc32(portion, crc)
+            rest, crc = rest - len(portion), crc32(portion, crc)
         if crc != told:
             raise ValueError('the summary is damaged')
     return start

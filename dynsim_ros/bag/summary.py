@@ -10,7 +10,6 @@ import os
 import struct
 import tempfile
 from typing import Any, NamedTuple
-import zlib
 
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
@@ -26,6 +25,7 @@ from mcap.records import (
     SummaryOffset,
 )
 
+from .checksum import crc32
 from .output import Output
 from .records import HEAD, MAGIC
 
@@ -248,7 +248,7 @@ class _Writing:
         self._write_crc(data)
 
     def _write_crc(self, data):
-        self._crc = zlib.crc32(data, self._crc)
+        self._crc = crc32(data, self._crc)
 
 
 def as_bytes(record: McapRecord) -> bytes:

@@ -15,7 +15,7 @@ KEYS = {'llvmlite': 'python3-numba', 'lz4': 'mcap-ros2-support', 'mcap': 'mcap-r
         'matplotlib': 'python3-matplotlib', 'numba': 'python3-numba', 'numpy': 'python3-numpy',
         'yaml': 'python3-yaml', 'zstandard': 'mcap-ros2-support'}
 # what says in one line that it is missing, or what nothing is missing without
-OPTIONAL = {'pandas', 'rich', 'simulation_interfaces', 'viser'}
+OPTIONAL = {'isal', 'pandas', 'rich', 'simulation_interfaces', 'viser'}
 
 
 @pytest.fixture(scope='module')

@@ -7,7 +7,6 @@ from __future__ import annotations
 from io import BytesIO
 import struct
 from typing import Any, BinaryIO, NamedTuple
-import zlib
 
 from mcap import records
 from mcap.data_stream import ReadDataStream
@@ -15,6 +14,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 import numpy as np
 
+from ..checksum import crc32
 from ..chunk_content import ChunkHead, DamagedChunk, LARGEST_CHUNK, open_chunk, read_head
 from ..chunk_records import ChunkRecords, records_of
 from ..records import HEAD, MESSAGE, Record
@@ -149,7 +149,7 @@ def _attachment(record, stream):
     stream.seek(record.start + HEAD.size)
     crc = 0
     for portion in portions(stream, record.start + HEAD.size, record.end - 4):
-        crc = zlib.crc32(portion, crc)
+        crc = crc32(portion, crc)
     told = int.from_bytes(stream.read(4), 'little')
     if told and told != crc:
         raise NotIntact('its checksum is wrong', rest)

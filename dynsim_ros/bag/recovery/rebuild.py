@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import BinaryIO
-import zlib
 
 from mcap import records
 from mcap.opcode import Opcode
@@ -15,6 +14,7 @@ from .intact import portions, PRIVATE
 from .search import Piece
 from .stretches import Hole, stretches, WholeChunk
 from .survey import Survey, whole
+from ..checksum import crc32
 from ..chunk_records import ChunkRecords, records_of
 from ..mcap_file import compressor
 from ..output import Output
@@ -102,7 +102,7 @@ class Rebuild:
         self._loose.clear()
         found, data = records_of(content), self._compress(content)
         place = ChunkPlace(self._output.tell(), *found.times, _COMPRESSION, len(data),
-                           len(content), zlib.crc32(content))
+                           len(content), crc32(content))
         self._write_chunk(place, data, found.indexes())
 
     def _copy_record(self, record: Record, value):

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from io import BytesIO
 import struct
 from typing import BinaryIO
-import zlib
 
 from mcap import records
 from mcap.data_stream import ReadDataStream
@@ -20,6 +19,7 @@ from mcap.opcode import Opcode
 from .intact import portions
 from .search import Damage, Piece
 from .stretches import Hole, stretches, WholeChunk
+from ..checksum import crc32
 from ..gap import MISSING
 from ..records import HEAD, MAGIC, MESSAGE, Record
 from ..summary import ENTRY_SIZE, INDEX_HEAD, Summary
@@ -240,7 +240,7 @@ class Survey:
             if not self._is_summary_sound and at <= record.start:
                 crc = 0
                 for portion in portions(self._stream, at, record.start + HEAD.size + _COVERED):
-                    crc = zlib.crc32(portion, crc)
+                    crc = crc32(portion, crc)
                 self._is_summary_sound = crc == told
                 self._has_good_end = self._is_summary_sound and at == start
 
