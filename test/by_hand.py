@@ -11,6 +11,7 @@ from dynsim_ros.integrators.dense_output import (dense_explicit, DENSE_SIZE, den
                                                  stiff_table, write_state)
 from dynsim_ros.integrators.dop853 import dense_dop853, dop853
 from dynsim_ros.integrators.gragg import gragg, gragg_schedule
+from dynsim_ros.integrators.lane_schedule import FINER
 from dynsim_ros.integrators.memory import new_memory
 from dynsim_ros.integrators.radau import dense_radau, radau
 from dynsim_ros.integrators.stiff import stiff, stiff_schedule
@@ -83,8 +84,8 @@ class ByHand:
             found.append(y.copy())
         return np.array(found)
 
-    def dense(self, t, h, y, fractions, stages=6):
-        """Return the states at fractions of a step, from the dense output; stages: of that."""
+    def dense(self, t, h, y, fractions, substeps=FINER):
+        """Return the states at fractions of a step, from the dense output; substeps: of that."""
         y_new, _ = self.step(t, h, y)
         normalise(self.bodies, self.rigid, y_new)
         coefficients = np.zeros(DENSE_SIZE * len(y))
@@ -96,7 +97,7 @@ class ByHand:
             dense_radau(self.model, radau_table(), self.size, y, self.memory, coefficients)
         else:
             build, table = {'dop853': (dense_dop853, self.plan)}.get(
-                self.method, (dense_explicit, explicit_table(stages)))
+                self.method, (dense_explicit, explicit_table(substeps)))
             build(*given, table, self.size, t, h, y, self.rates(t, y), y_new,
                   self.rates(t + h, y_new), self.memory, coefficients)
         out = np.tile(y, (len(fractions), 1))

@@ -21,7 +21,7 @@ import numpy as np
 
 from .dop853 import dense_dop853
 from .gragg import midpoint
-from .lane_schedule import extrapolation_weights
+from .lane_schedule import extrapolation_weights, FINER
 from .linearly_implicit import linearly_implicit_substep
 from .memory import DENSE_SIZE, lane_row, STAGES
 from .radau import dense_radau
@@ -66,9 +66,10 @@ def _weights(values, derivatives, seconds, parity):
 
 
 # Places of the parts of the tables: the instants, the weights of the sequences, how many these are
-# after an explicit step, how near rates are compared, then the weights of the data: of all in even
-# powers, then of all in odd ones.
-_TARGETS, _SEQUENCES, _STAGES, _NEAR, _DATA = 0, 2 * COUNT, 4 * COUNT - 1, 4 * COUNT, 5 * COUNT
+# after an explicit step, how near rates are compared, how many substeps the sequences have, then
+# the weights of the data: of all in even powers, then of all in odd ones.
+_TARGETS, _SEQUENCES, _STAGES, _NEAR = 0, 2 * COUNT, 4 * COUNT - 1, 4 * COUNT
+_SUBSTEPS, _DATA = 5 * COUNT, 7 * COUNT
 # Data of an explicit step: values at the end and at the nodes, rates there, changes of the rates
 # at the end; of a stiff one: values at the end and at the nodes.
 _EXPLICIT_DATA, _STIFF_DATA = 7, 5
@@ -86,13 +87,17 @@ def _table(sequences, *known):
 
 
 @lru_cache
-def explicit_table(stages=6):
-    """Return the packed table of the interpolation after an explicit step; stages: 7 at most."""
+def explicit_table(substeps=FINER):
+    """
+    Return the packed table of the interpolation after an explicit step.
+
+    substeps: even, of the sequences that reach the instants between; 7 at most.
+    """
     places, end = [Fraction(1), *_EXPLICIT_NODES], Fraction(1)
-    substeps = list(range(2, 2 * stages + 1, 2))
-    weights = extrapolation_weights(substeps, 2, stages)
+    weights = extrapolation_weights(substeps, 2, len(substeps))
     table = _table([weights[n] for n in substeps], places, places, [end])
-    table[_STAGES] = stages
+    table[_STAGES] = len(substeps)
+    table[_SUBSTEPS:_SUBSTEPS + len(substeps)] = substeps
     # In fractions of the step: on from the start, back from the end to behind the middle.
     ahead = [(1 - s) / 2 for s in _EXPLICIT_NODES]
     table[:COUNT] = [*ahead, *(-fraction for fraction in ahead)]
@@ -166,17 +171,17 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
     whole, arm = with_arm(model), arm_of_state(model, base)
     reach = reach_of_state(model, drive, start, base, arm)
     for stage in range(int(table[_STAGES])):
-        h = way / (2.0 * (stage + 1))
+        h, pairs = way / table[_SUBSTEPS + stage], int(table[_SUBSTEPS + stage]) // 2
         for i in range(size):
             a[i] = spread(0.0)
             b[i] = h * choose(from_start, rate[i], rate_new[i])
             state[i] = base[i] + b[i]
         begin_arm(arm, h, base, a, b)
         passed = h
-        for pair in range(stage + 1):
+        for pair in range(pairs):
             midpoint(whole, drive, start, passed, h, base, arm, reach, a, b, state, f, following)
             passed = passed + h
-            if pair == stage:
+            if pair == pairs - 1:
                 break
             midpoint(whole, drive, start, passed, h, base, arm, reach, b, a, following, f, state)
             passed = passed + h
@@ -225,8 +230,10 @@ def dense_explicit(model, drive, table, size, t, step, y, rate, y_new, rate_new,
                                  behind + before, sums)
             put_powers(size, dense, four, i, sums)
         dense[i] += y[i]
-    stages = int(table[_STAGES])
-    return stages * stages + 2
+    evaluations = 2
+    for stage in range(int(table[_STAGES])):
+        evaluations += int(table[_SUBSTEPS + stage]) - 1
+    return evaluations
 
 
 @formula

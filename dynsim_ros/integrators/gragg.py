@@ -12,8 +12,8 @@ a step takes as long as the evaluations of its longest sequence. Short sequences
 that, and are worth less than longer ones.
 """
 
-from .lane_schedule import (add_ended, begin_sums, combine, ENDED, FIRST, place_of, schedule,
-                            SECOND, Sequences)
+from .lane_schedule import (add_ended, begin_sums, combine, ENDED, FINER, FIRST, place_of,
+                            schedule, SECOND, Sequences)
 from .memory import lane_row
 from ..physics.advancing import Advancing
 from ..physics.arms import (arm_of_state, begin_arm, put_arm, restart_arm, step_arm,
@@ -26,10 +26,10 @@ from ..physics.reach import put_reach, reach_of_state
 # Found by trying all that fit into the lanes, on spheres, chains and webs.
 SEQUENCES = (
     Sequences(2e-5, (10, 16, 22, 24, 26), share=2.0, reach=4.0),
-    Sequences(2e-9, (6, 8, 10, 12, 14, 16, 22)),
-    Sequences(3e-11, (6, 8, 10, 12, 14, 16, 22), dense_stages=6),
+    Sequences(1.5e-8, (6, 8, 10, 12, 14, 16, 22)),
+    Sequences(3e-11, (6, 8, 10, 12, 14, 16, 22), dense_substeps=FINER),
     # More of them than stages: their weights let a quarter of the rounding through.
-    Sequences(0.0, (8, 10, 12, 14, 16, 18, 26), 6, dense_stages=6))
+    Sequences(0.0, (8, 10, 12, 14, 16, 18, 26), 6, dense_substeps=FINER))
 
 
 def gragg_schedule(substeps=SEQUENCES[1].substeps, stages=None):

@@ -96,7 +96,7 @@ def stormer_extrapolation(sequences):
 
 def _extrapolation(rule, schedule, sequences):
     plan = schedule(sequences.substeps, sequences.stages)
-    tableaux = Tableaux(None, None, None, None, None, explicit_table(sequences.dense_stages))
+    tableaux = Tableaux(None, None, None, None, None, explicit_table(sequences.dense_substeps))
     return Adaptive(tableaux._replace(**{rule: plan}), 2.0 * plan.stages - 1.0, sequences.share,
                     sequences.reach)
 
