@@ -21,8 +21,9 @@ from .writer import BagWriter
 from ..simulation.rows.kernel import PRESENT
 
 # How often what waits is brought into the file [s]: so much is lost at most of a process that is
-# killed. And how often that is tried where it failed.
-_PERIOD, _RETRY = 0.02, 0.2
+# killed. How long it waits for who told the last time that it was to be done, see Recorder.hurry.
+# And how often that is tried where it failed.
+_PERIOD, _HURRIED, _RETRY = 0.02, 0.05, 0.2
 
 
 class BagThread:
@@ -119,8 +120,10 @@ class BagThread:
 
     def _run(self):
         use_any_processor()
+        is_told = False
         while not self.is_closing:
-            self.wake.wait(_RETRY if self.is_failing else _PERIOD)
+            usual = _HURRIED if is_told else _PERIOD
+            is_told = self.wake.wait(_RETRY if self.is_failing else usual)
             self.wake.clear()
             self._write_what_waits()
         if not self._write_what_waits():

@@ -6,6 +6,8 @@ Ticks that follow each other without the interpreter: compiled code waits for th
 The states at the next ticks are often known, or the step that gives them can be taken now: see
 Simulator.step_ahead. Their messages are built in one go; what is left to be done at each tick is
 to wake up and to send. Neither the interpreter nor its lock, whoever holds that, is needed for it.
+Where nobody listens and all is recorded, there is nothing to do until the last of them: they are
+run in one go then.
 """
 
 import time
@@ -21,8 +23,9 @@ from ..simulation.simulator import MOST_AHEAD
 
 # So long ticks are at most [ns]: who asks for something waits for the end of one.
 _LONGEST_TICK = 2_000_000
-# So long a burst lasts at most that is recorded [ns]: what is to be recorded waits until then.
-_LONGEST_RECORDED = 15_000_000
+# So long a burst lasts at most that is recorded [ns]: what is to be recorded waits until then. As
+# long as one that nobody listens to, which ends where markers are due.
+_LONGEST_RECORDED, _LONGEST_UNHEARD = 15_000_000, 40_000_000
 # After something else had to be done, as a command, less is built that may be of no use.
 _FEW = 8
 # Ticks that are later than this are left to who can give them up [ns].
@@ -97,7 +100,7 @@ class Bursts:
         self._spent = np.zeros(1, np.int64)
         self._instant = np.zeros(3, np.int64)
         self._instant[2] = self._instant.ctypes.data
-        self._tick_on = None
+        self._tick_on, self._nothing = None, no_rows()
 
     @property
     def period(self):
@@ -114,14 +117,38 @@ class Bursts:
         if (period is None or self._mailbox.alarm.functions is None
                 or self._is_too_late(period)):
             return 0
+        run = self._run
+        stretch = run.unheard_ahead(min(int(_LONGEST_UNHEARD / period), MOST_AHEAD))
+        if stretch is not None:
+            return self._pass(stretch) if self._mailbox.is_quiet() else 0
         most = self._most
-        if self._run.bag is not None:
+        if run.bag is not None:
             most = min(most, int(_LONGEST_RECORDED / period))
-        stretch = self._run.stretch_ahead(most)
+        stretch = run.stretch_ahead(most)
         if (stretch is None or not isinstance(stretch.due.send, Together)
                 or not self._mailbox.is_quiet()):
             return 0
         return self._tick(stretch, period)
+
+    def _pass(self, stretch):
+        """Run the ticks of a Stretch that nobody listens to, when all are due or until woken."""
+        run, pacer = self._run, self._pacer
+        deadlines = pacer.deadlines(run.simulator.time_ns, run.simulator.settings.tick_ns,
+                                    stretch.count)
+        due = self._wait(deadlines, self._nothing)
+        done = run.pass_by(stretch, due) if due else 0
+        if done:
+            pacer.is_up_to_date()
+            self._lateness.add_all(self._late[:done])
+        return done
+
+    def _wait(self, deadlines, rows):
+        """Let compiled code run to deadlines; see _tick_on."""
+        if self._tick_on is None:
+            self._tick_on = prepare_bursts()
+        alarm = self._mailbox.alarm
+        return self._tick_on(*alarm.functions, alarm.flag, alarm.semaphore, self._instant,
+                             deadlines, self._spin, self._late, self._spent, rows)
 
     def _is_too_late(self, period):
         """Tell whether the next tick is, one that comes after so long [ns]."""
@@ -136,11 +163,7 @@ class Bursts:
         deadlines = pacer.deadlines(run.simulator.time_ns, run.simulator.settings.tick_ns, count)
         built = time.monotonic_ns()
         self._spent[0] = 0
-        if self._tick_on is None:
-            self._tick_on = prepare_bursts()
-        alarm = self._mailbox.alarm
-        done = self._tick_on(*alarm.functions, alarm.flag, alarm.semaphore, self._instant,
-                             deadlines, self._spin, self._late, self._spent, stretch.due.send.rows)
+        done = self._wait(deadlines, stretch.due.send.rows)
         self._most = min(2 * self._most, MOST_AHEAD) if done == count else _FEW
         if done:
             run.was_published(stretch, done)

@@ -97,8 +97,7 @@ class Run:
             else:
                 simulator.advance_ticks(ticks)
         except DivergenceError as error:
-            self.paused = True
-            self._log.error(f'paused: {error}; then call ~/reset')
+            self._pause_for(error)
             is_wanted = False
         self.work['step'] += time.monotonic_ns() - begin
         passed = simulator.tick - is_wanted
@@ -106,6 +105,11 @@ class Run:
             self.topics.pass_over(before, passed, tick_ns)
         if is_wanted:
             self.publish()
+
+    def _pause_for(self, error):
+        """Pause at the last state, as the motion diverges."""
+        self.paused = True
+        self._log.error(f'paused: {error}; then call ~/reset')
 
     def now(self):
         """Return tick and time, as the services tell them."""
@@ -129,23 +133,53 @@ class Run:
         self.work['publish'] += built - begin
         self.work['record'] += time.monotonic_ns() - built
 
-    def stretch_ahead(self, most):
-        """
-        Return the Stretch of the next ticks, at most so many, whose states are known then.
-
-        None where the run is not to go on, or not so.
-        """
+    def _stretch(self, most):
+        """Return the Stretch of the next ticks, at most so many; None where none is to be run."""
         simulator = self.simulator
         if (self.paused or self.waiting or self.finished
                 or (self._options['publish_clock'] and self._clock.is_heard)
                 or (self.bag is not None and not self.bag.can_put_many)):
             return None
         schedule = self.topics.schedule(simulator.settings.tick_ns, self.bag is not None)
-        stretch = schedule.stretch(simulator.tick, min(self._ticks_to_end(), most))
-        count = 0 if stretch is None else simulator.step_ahead()
+        return schedule.stretch(simulator.tick, min(self._ticks_to_end(), most))
+
+    def stretch_ahead(self, most):
+        """
+        Return the Stretch of the next ticks, at most so many, whose states are known then.
+
+        None where the run is not to go on, or not so.
+        """
+        stretch = self._stretch(most)
+        count = 0 if stretch is None else self.simulator.step_ahead()
         if count < 1:
             return None
         return stretch if count >= stretch.count else Stretch(stretch.due, count, [])
+
+    def unheard_ahead(self, most):
+        """Return the Stretch of the next ticks, at most so many, if they are recorded alone."""
+        stretch = None if self.bag is None else self._stretch(most)
+        return None if stretch is None or stretch.due.is_heard else stretch
+
+    def pass_by(self, stretch, count):
+        """Run and record the first ticks of a Stretch of unheard_ahead; return how many were."""
+        passed, simulator = 0, self.simulator
+        while passed < count:
+            before, begin = self.stamp_ns, time.monotonic_ns()
+            try:
+                instants = simulator.pass_ticks(count - passed)
+            except DivergenceError as error:
+                self._pause_for(error)
+                break
+            stepped = time.monotonic_ns()
+            self.topics.rows.fill(instants, before + simulator.settings.tick_ns, stretch.due.rows)
+            self.work['step'] += stepped - begin
+            self.work['record'] += time.monotonic_ns() - stepped
+            done = len(instants.states)
+            self._take_note(stretch._replace(count=stretch.count - passed), done, before)
+            passed += done
+        if passed:
+            self.bag.recorder.hurry()
+        return passed
 
     def build_ahead(self, stretch):
         """Build the rows of a Stretch that stretch_ahead returned."""
@@ -155,9 +189,13 @@ class Run:
 
     def was_published(self, stretch, done):
         """Take note that its first so many were published; record them, and do what is left."""
-        simulator, before = self.simulator, self.stamp_ns
-        simulator.take(done)
-        begin = time.monotonic_ns()
+        before = self.stamp_ns
+        self.simulator.take(done)
+        self._take_note(stretch, done, before)
+
+    def _take_note(self, stretch, done, before):
+        """Do that for ticks after a stamp [ns] that the simulator has passed."""
+        simulator, begin = self.simulator, time.monotonic_ns()
         others = self.topics.were_published(stretch, done, simulator, self.stamp_ns)
         published = time.monotonic_ns()
         if self.bag is not None:

@@ -17,11 +17,13 @@ class Due(NamedTuple):
     """
     What to build at a tick.
 
-    rows: Wanted; send: publishes those that are heard, see Sending; others: [(channel,
-    publisher)] of what is no row, the publisher None where nobody listens.
+    rows: Wanted; is_heard: whether somebody listens to any of them; send: publishes those that are
+    heard, see Sending; others: [(channel, publisher)] of what is no row, the publisher None where
+    nobody listens.
     """
 
     rows: Wanted
+    is_heard: bool
     send: Callable
     others: list
 
@@ -101,7 +103,7 @@ class Schedule:
         heard = [(i, publisher) for i, publisher in zip(rows.numbers, publishers)
                  if publisher is not None]
         others = [(channel, publisher) for channel, publisher in due if channel.row is None]
-        return Due(rows, self._sending.of(heard), others)
+        return Due(rows, bool(heard), self._sending.of(heard), others)
 
     def due_between(self, first, last):
         """Return how many messages are due at the ticks first + 1 to last, wanted or not."""
