@@ -12,10 +12,13 @@ import time
 
 from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
+from recording import by_bursts, recorded_ticks
 
 SCENE, RATE, COMPRESSION = 'sphere_on_spring', 1000, 'zstd'
 # Simulated time of the shorter and the longer run [s]: their difference is free of the start.
 DURATIONS = (10, 310)
+# Ticks that the recorder alone is given.
+ALONE = 40_000
 
 
 def simulate(folder, seconds):
@@ -72,9 +75,12 @@ def measure(rounds):
     Return microseconds a message of each round, how many topics and messages a second there are.
 
     'simulate': stepping, building and recording together; 'recorded': the same less stepping;
-    'mcap.Writer': writing alone.
+    'recorder': recording alone, see recording.py; 'mcap.Writer': writing alone.
     """
     ours, recorded, peer = [], [], []
+    rows, blocks = recorded_ticks(ALONE)
+    alone = ALONE * len(rows.channels)
+    recorder = []
     with tempfile.TemporaryDirectory(prefix='dynsim_ros_bench_') as folder:
         for _ in range(rounds):
             (short, path), (long, long_path) = (simulate(folder, t) for t in DURATIONS)
@@ -84,7 +90,10 @@ def measure(rounds):
             stepping = step_only(DURATIONS[1] - DURATIONS[0])
             recorded.append(1e6 * (long - short - stepping) / more)
             peer.append(1e6 * mcap_writer(messages, folder) / len(messages))
-    return {'simulate': ours, 'recorded': recorded, 'mcap.Writer': peer,
+            bag = Path(folder, 'alone.mcap')
+            recorder.append(1e6 * by_bursts(bag, rows, blocks, COMPRESSION) / alone)
+            bag.unlink()
+    return {'simulate': ours, 'recorded': recorded, 'recorder': recorder, 'mcap.Writer': peer,
             'topics': len({topic for topic, *_ in messages}),
             'messages a second': more / (DURATIONS[1] - DURATIONS[0])}
 

@@ -26,7 +26,7 @@ import numpy as np
 TYPES = {'none': CompressionType.NONE, 'lz4': CompressionType.LZ4, 'zstd': CompressionType.ZSTD}
 TICK_NS, ROUNDS = 1_000_000, 5
 # As many ticks at a time as a node at 1 kHz takes that nobody listens to.
-BURST = 15
+BURST = 40
 HEAD = """\
 # Recording
 
