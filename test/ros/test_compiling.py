@@ -66,5 +66,5 @@ def test_what_was_compiled_once_is_there(client):
     before = len(client.heard['sphere/pose'])
     for values in ({'air.linear_drag': 0.1, 'spring.damping': 0.5}, SWITCHED_OFF):
         assert client.set_group(values).successful
-    # To compile takes several times as long, at 100 Hz; a busy machine takes half a second for this.
+    # to compile takes two seconds at the very least; a busy machine half of one for this
     assert len(client.heard['sphere/pose']) < before + 100
