@@ -77,10 +77,9 @@ def measure(rounds):
     'simulate': stepping, building and recording together; 'recorded': the same less stepping;
     'recorder': recording alone, see recording.py; 'mcap.Writer': writing alone.
     """
-    ours, recorded, peer = [], [], []
+    ours, recorded, recorder, peer = [], [], [], []
     rows, blocks = recorded_ticks(ALONE)
     alone = ALONE * len(rows.channels)
-    recorder = []
     with tempfile.TemporaryDirectory(prefix='dynsim_ros_bench_') as folder:
         for _ in range(rounds):
             (short, path), (long, long_path) = (simulate(folder, t) for t in DURATIONS)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 import threading
+import time
 
 import numpy as np
 
@@ -21,8 +22,8 @@ from .writer import BagWriter
 from ..simulation.rows.kernel import PRESENT
 
 # How often what waits is brought into the file [s]: so much is lost at most of a process that is
-# killed. How long it waits for who told the last time that it was to be done, see Recorder.hurry.
-# And how often that is tried where it failed.
+# killed. How long it waits for who told the last time that it was to be done, see hurry. And how
+# often that is tried where it failed.
 _PERIOD, _HURRIED, _RETRY = 0.02, 0.05, 0.2
 
 
@@ -51,6 +52,7 @@ class BagThread:
         self.is_closing = False
         self._plan: RowPlan | None = None
         self._messages_before = 0
+        self._written = 0.0
         self._gaps = 0
         self._rejected: Gap | None = None
         self._backlog = backlog
@@ -74,6 +76,11 @@ class BagThread:
         self.is_closing = True
         self.wake.set()
         self._thread.join()
+
+    def hurry(self):
+        """Let what waits be written now, if that was not done just before."""
+        if time.monotonic() - self._written >= _PERIOD:
+            self.wake.set()
 
     def write(self, stamp_ns: int, messages: Sequence[tuple[int, bytes]]):
         """Write the messages of one instant."""
@@ -125,6 +132,7 @@ class BagThread:
             usual = _HURRIED if is_told else _PERIOD
             is_told = self.wake.wait(_RETRY if self.is_failing else usual)
             self.wake.clear()
+            self._written = time.monotonic()
             self._write_what_waits()
         if not self._write_what_waits():
             self.lost += self._backlog.drop()

@@ -136,8 +136,8 @@ class Recorder:
             self._lose(stamp_ns, count)
 
     def hurry(self):
-        """Let what was handed over be written now, rather than within the next 0.02 s."""
-        self._thread.wake.set()
+        """Let what was handed over be written now, if that is not done often already."""
+        self._thread.hurry()
 
     def go_on_in(self, make: Callable[[], BagWriter]):
         """

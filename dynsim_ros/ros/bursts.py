@@ -23,8 +23,8 @@ from ..simulation.simulator import MOST_AHEAD
 
 # So long ticks are at most [ns]: who asks for something waits for the end of one.
 _LONGEST_TICK = 2_000_000
-# So long a burst lasts at most that is recorded [ns]: what is to be recorded waits until then. As
-# long as one that nobody listens to, which ends where markers are due.
+# So long a burst lasts at most that is recorded [ns]: what is to be recorded waits until then. The
+# second is for those that nobody listens to, which end where markers are due.
 _LONGEST_RECORDED, _LONGEST_UNHEARD = 15_000_000, 40_000_000
 # After something else had to be done, as a command, less is built that may be of no use.
 _FEW = 8
@@ -118,13 +118,17 @@ class Bursts:
                 or self._is_too_late(period)):
             return 0
         run = self._run
-        stretch = run.unheard_ahead(min(int(_LONGEST_UNHEARD / period), MOST_AHEAD))
-        if stretch is not None:
+        stretch = run.stretch(MOST_AHEAD)
+        if stretch is None:
+            return 0
+        if not stretch.due.is_heard:
+            # Recorded, then: else it would not be wanted.
+            stretch = stretch.first(int(_LONGEST_UNHEARD / period))
             return self._pass(stretch) if self._mailbox.is_quiet() else 0
         most = self._most
         if run.bag is not None:
             most = min(most, int(_LONGEST_RECORDED / period))
-        stretch = run.stretch_ahead(most)
+        stretch = run.known_of(stretch, most)
         if (stretch is None or not isinstance(stretch.due.send, Together)
                 or not self._mailbox.is_quiet()):
             return 0

@@ -7,7 +7,6 @@ import time
 
 import numpy as np
 
-from .schedule import Stretch
 from ..bag.bag_files import Limits
 from ..bag.bag_names import new_path
 from ..bag.run_bag import RunBag
@@ -133,8 +132,8 @@ class Run:
         self.work['publish'] += built - begin
         self.work['record'] += time.monotonic_ns() - built
 
-    def _stretch(self, most):
-        """Return the Stretch of the next ticks, at most so many; None where none is to be run."""
+    def stretch(self, most):
+        """Return the Stretch of the next ticks, at most so many; None where there is none."""
         simulator = self.simulator
         if (self.paused or self.waiting or self.finished
                 or (self._options['publish_clock'] and self._clock.is_heard)
@@ -143,25 +142,13 @@ class Run:
         schedule = self.topics.schedule(simulator.settings.tick_ns, self.bag is not None)
         return schedule.stretch(simulator.tick, min(self._ticks_to_end(), most))
 
-    def stretch_ahead(self, most):
-        """
-        Return the Stretch of the next ticks, at most so many, whose states are known then.
-
-        None where the run is not to go on, or not so.
-        """
-        stretch = self._stretch(most)
-        count = 0 if stretch is None else self.simulator.step_ahead()
-        if count < 1:
-            return None
-        return stretch if count >= stretch.count else Stretch(stretch.due, count, [])
-
-    def unheard_ahead(self, most):
-        """Return the Stretch of the next ticks, at most so many, if they are recorded alone."""
-        stretch = None if self.bag is None else self._stretch(most)
-        return None if stretch is None or stretch.due.is_heard else stretch
+    def known_of(self, stretch, most):
+        """Return its first ticks, at most so many, whose states are known then, or None."""
+        count = min(self.simulator.step_ahead(), most)
+        return stretch.first(count) if count >= 1 else None
 
     def pass_by(self, stretch, count):
-        """Run and record the first ticks of a Stretch of unheard_ahead; return how many were."""
+        """Run and record the first ticks of a Stretch that nobody hears; return how many were."""
         passed, simulator = 0, self.simulator
         while passed < count:
             before, begin = self.stamp_ns, time.monotonic_ns()
@@ -182,7 +169,7 @@ class Run:
         return passed
 
     def build_ahead(self, stretch):
-        """Build the rows of a Stretch that stretch_ahead returned."""
+        """Build the rows of a Stretch that known_of returned."""
         simulator = self.simulator
         self.topics.rows.fill(simulator.instants_ahead(stretch.count),
                               self.stamp_ns + simulator.settings.tick_ns, stretch.due.rows)

@@ -39,6 +39,10 @@ class Stretch(NamedTuple):
     count: int
     others: list
 
+    def first(self, count):
+        """Return the Stretch of its first ticks, at most so many."""
+        return self if count >= self.count else Stretch(self.due, count, [])
+
 
 class Schedule:
     """

@@ -126,15 +126,16 @@ def test_every_cut_gives_what_lies_before_it(tmp_path):
     path = tmp_path / 'cut.mcap'
     write_sample(path, chunk_size=3000)
     whole = path.read_bytes()
-    # Where but the last eight bytes are cut off, which say that it is whole, nothing is missing.
-    for end in [*range(8, len(whole) - 8, 1999), len(whole) - 9]:
+    for end in [*range(8, len(whole), 1999), len(whole) - 9, len(whole) - 8]:
         path.write_bytes(whole[:end])
         with open_bag(path) as bag:
             messages = list(bag.messages())
             problem = bag.problem
         run = load(path)
         assert content(run) == expected(messages)
-        assert run.problem == problem is not None
+        assert run.problem == problem
+        # the last eight bytes say that it is whole: where they alone lack, nothing does
+        assert (problem is not None) == (end < len(whole) - 8)
 
 
 def test_a_damaged_chunk_is_left_out(tmp_path):
