@@ -15,6 +15,7 @@ import time
 import numpy as np
 
 from .calling import call
+from .histogram import add
 from .pacing import SECOND
 from .sending import no_rows, publish_block, Together
 from ..integrators.entry import entry
@@ -55,32 +56,36 @@ def _wait(sleep, clock, alarm, semaphore, instant, deadline, spin):
 
 
 @kernel
-def _tick_on(sleep, clock, alarm, semaphore, instant, deadlines, spin, late, spent, rows):
+def _tick_on(sleep, clock, alarm, semaphore, instant, deadlines, spin, period, lateness, spent,
+             rows):
     """
     Publish block k of rows at deadline k of the steady clock [ns]; return how many were.
 
     Where nobody listens, all are left to the last deadline. An alarm ends it before the next tick.
-    For most arguments see _wait. late: (ticks,) receives how late each was; spent: (1,) how long
-    publishing took [ns].
+    For most arguments see _wait. period: how long a tick takes [ns]; lateness: tally of a
+    Histogram; spent: (2,) receives how long publishing took [ns], and how many of the ticks were
+    late by a tick or more.
     """
     count = deadlines.shape[0]
+    spent[:] = 0
     if rows.publishers.shape[0] == 0:
         now = _wait(sleep, clock, alarm, semaphore, instant, deadlines[count - 1], spin)
         for k in range(count):
             if deadlines[k] > now:
                 return k
-            late[k] = 0
-        late[count - 1] = now - deadlines[count - 1]
+            add(now - deadlines[k] if k == count - 1 else 0, lateness)
         return count
     for k in range(count):
         now = _wait(sleep, clock, alarm, semaphore, instant, deadlines[k], spin)
         if alarm[0] != 0:
             return k
-        late[k] = now - deadlines[k]
-        if late[k] > _PATIENCE or publish_block(rows, k) < rows.publishers.shape[0]:
+        late = now - deadlines[k]
+        if late > _PATIENCE or publish_block(rows, k) < rows.publishers.shape[0]:
             return k
+        add(late, lateness)
         call(clock, (_MONOTONIC, instant[2]))
         spent[0] += instant[0] * SECOND + instant[1] - now
+        spent[1] += late >= period
     return count
 
 
@@ -96,8 +101,7 @@ class Bursts:
         self._run, self._pacer, self._mailbox, self._lateness = run, pacer, mailbox, lateness
         self._spin = round(spin * SECOND)
         self._most = _FEW
-        self._late = np.zeros(MOST_AHEAD, np.int64)
-        self._spent = np.zeros(1, np.int64)
+        self._spent = np.zeros(2, np.int64)
         self._instant = np.zeros(3, np.int64)
         self._instant[2] = self._instant.ctypes.data
         self._tick_on, self._nothing = None, no_rows()
@@ -124,7 +128,7 @@ class Bursts:
         if not stretch.due.is_heard:
             # Recorded, then: else it would not be wanted.
             stretch = stretch.first(int(_LONGEST_UNHEARD / period))
-            return self._pass(stretch) if self._mailbox.is_quiet() else 0
+            return self._pass(stretch, period) if self._mailbox.is_quiet() else 0
         most = self._most
         if run.bag is not None:
             most = min(most, int(_LONGEST_RECORDED / period))
@@ -134,25 +138,25 @@ class Bursts:
             return 0
         return self._tick(stretch, period)
 
-    def _pass(self, stretch):
+    def _pass(self, stretch, period):
         """Run the ticks of a Stretch that nobody listens to, when all are due or until woken."""
         run, pacer = self._run, self._pacer
         deadlines = pacer.deadlines(run.simulator.time_ns, run.simulator.settings.tick_ns,
                                     stretch.count)
-        due = self._wait(deadlines, self._nothing)
+        due = self._wait(deadlines, period, self._nothing)
         done = run.pass_by(stretch, due) if due else 0
         if done:
             pacer.is_up_to_date()
-            self._lateness.add_all(self._late[:done])
         return done
 
-    def _wait(self, deadlines, rows):
+    def _wait(self, deadlines, period, rows):
         """Let compiled code run to deadlines; see _tick_on."""
         if self._tick_on is None:
             self._tick_on = prepare_bursts()
         alarm = self._mailbox.alarm
         return self._tick_on(*alarm.functions, alarm.flag, alarm.semaphore, self._instant,
-                             deadlines, self._spin, self._late, self._spent, rows)
+                             deadlines, self._spin, int(period), self._lateness.tally,
+                             self._spent, rows)
 
     def _is_too_late(self, period):
         """Tell whether the next tick is, one that comes after so long [ns]."""
@@ -166,15 +170,12 @@ class Bursts:
         run.build_ahead(stretch)
         deadlines = pacer.deadlines(run.simulator.time_ns, run.simulator.settings.tick_ns, count)
         built = time.monotonic_ns()
-        self._spent[0] = 0
-        done = self._wait(deadlines, stretch.due.send.rows)
+        done = self._wait(deadlines, period, stretch.due.send.rows)
         self._most = min(2 * self._most, MOST_AHEAD) if done == count else _FEW
         if done:
             run.was_published(stretch, done)
             pacer.is_up_to_date()
-            late = self._late[:done]
-            self._lateness.add_all(late)
-            pacer.late += int(np.count_nonzero(late >= period))
+            pacer.late += int(self._spent[1])
         run.work['publish'] += built - begin + int(self._spent[0])
         return done
 
@@ -182,4 +183,4 @@ class Bursts:
 def prepare_bursts():
     """Compile, or load from the disk cache, the kernel; return it, see entry."""
     numbers = np.zeros(3, np.int64)
-    return entry(_tick_on, 0, 0, numbers, 0, numbers, numbers, 0, numbers, numbers, no_rows())
+    return entry(_tick_on, 0, 0, numbers, 0, numbers, numbers, 0, 0, numbers, numbers, no_rows())

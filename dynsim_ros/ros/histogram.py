@@ -4,8 +4,7 @@
 
 import numpy as np
 
-from ..integrators.entry import entry
-from ..physics.jit import formula, kernel
+from ..physics.jit import formula
 
 # An octave of durations is divided into so many parts: percentiles are good to 1 / 8.
 _PARTS = 8
@@ -23,35 +22,36 @@ def place(duration):
     return _PARTS * shift + (duration >> shift)
 
 
-@kernel
-def _count(durations, counts):
-    """Count durations: (n,) int64, none below 0, in counts: (_SIZE,) int64."""
-    for duration in durations:
-        counts[place(duration)] += 1
+@formula
+def add(duration, tally):
+    """Count a duration [ns] that is not below 0 in the tally of a Histogram."""
+    tally[_SIZE] = max(tally[_SIZE], duration)
+    tally[place(duration)] += 1
 
 
 class Histogram:
-    """Counts durations [ns] by size; longest: the longest one so far."""
+    """
+    Counts durations [ns] by size.
+
+    tally: (_SIZE + 1,) int64, how many there are in each part, and the longest one so far;
+    compiled code counts there with `add`.
+    """
 
     def __init__(self):
-        self._counts = np.zeros(_SIZE, np.int64)
-        self._count = entry(_count, self._counts, self._counts)
-        self.longest = 0
+        self.tally = np.zeros(_SIZE + 1, np.int64)
+
+    @property
+    def longest(self):
+        """Return the longest duration so far [ns]."""
+        return int(self.tally[_SIZE])
 
     def add(self, duration):
-        """Count one duration: an integer [ns]."""
-        duration = max(duration, 0)
-        self.longest = max(self.longest, duration)
-        self._counts[place(min(duration, _LONGEST))] += 1
-
-    def add_all(self, durations):
-        """Count durations, one at least, none below 0: (n,) int64."""
-        self.longest = max(self.longest, int(durations.max()))
-        self._count(durations, self._counts)
+        """Count one duration: an integer [ns]; one below 0 as 0."""
+        add(min(max(duration, 0), _LONGEST), self.tally)
 
     def percentile(self, percent):
         """Return a duration that so many per cent are not above [ns]; None if there is none."""
-        counts = self._counts.tolist()
+        counts = self.tally[:_SIZE].tolist()
         left = sum(counts) * percent / 100.0
         if left == 0.0:
             return None
