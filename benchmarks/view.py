@@ -3,8 +3,9 @@
 """
 How soon `view` shows a recorded run of 60 s at 1 kHz, and how smoothly it plays it.
 
-Usage: python benchmarks/view.py [--rounds N] [--seconds S]. Writes view.md. The browser is a
-headless Chromium without a graphics card; where there is none, its lines are left out.
+Usage: python benchmarks/view.py [--rounds N] [--seconds S] [--angle NAME] [--output FILE]. Writes
+view.md. The browser is a headless Chromium without a graphics card; where there is none, its
+lines are left out. With `--angle gl-egl` or `--angle vulkan` it draws with the card.
 """
 
 import argparse
@@ -35,8 +36,9 @@ DRAWN = '() => new Promise(done => requestAnimationFrame(() => requestAnimationF
 HEAD = """\
 # The viewer
 
-`make bench-view` (two minutes): `view` of a run of {seconds:g} s at 1 kHz of the default scene,
+`{command}` (two minutes): `view` of a run of {seconds:g} s at 1 kHz of the default scene,
 {size:.0f} MB, {messages} messages, on {machine}, {date}. Load of the machine beside it: {load}.
+Drawn by: {renderer}.
 
 | from the command to | median s | least s | most s |
 |---|---|---|---|
@@ -45,14 +47,25 @@ COLUMNS = ('page', 'pictures a second', 'gap, 95 % [ms]', 'longest gap [ms]',
            'messages a second', 'kB a second', 'server [ms]', 'page [ms]', 'its scripts [ms]',
            'drawing [ms]')
 ABOUT_SMOOTHNESS = """
-Played at the speed of the run, in a browser without a graphics card: what such a card does
-takes time on the same cores as all else. The page is 1280 x 760 pixels, of the size of a phone,
-and of a stamp. The last columns are CPU time for each picture: of the viewer, of the process of
-the page, of the scripts in it, and of the process that draws in place of a card. The scripts and
-the rest of the page fit into the 33 ms between pictures that the viewer sends; the drawing does
-not.
+Played at the speed of the run. The page is 1280 x 760 pixels, of the size of a phone, and of a
+stamp. The last columns are CPU time for each picture: of the viewer, of the process of the page,
+of the scripts in it, and of the process that draws.{about_software}
 
 """
+ABOUT_SOFTWARE = """ In a browser without a graphics card, what
+such a card does takes time on the same cores as all else. The scripts and the rest of the page fit
+into the 33 ms between pictures that the viewer sends; the drawing does not."""
+SOFTWARE = 'swiftshader'
+ANGLES = {
+    SOFTWARE: ('--use-angle=swiftshader', '--enable-unsafe-swiftshader'),
+    'gl-egl': ('--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist'),
+    'vulkan': ('--use-gl=angle', '--use-angle=vulkan', '--enable-features=Vulkan',
+               '--disable-vulkan-surface', '--ignore-gpu-blocklist')}
+RENDERER = """() => {
+    const gl = document.createElement('canvas').getContext('webgl2');
+    return gl && gl.getParameter(
+        gl.getExtension('WEBGL_debug_renderer_info').UNMASKED_RENDERER_WEBGL);
+}"""
 
 
 @contextmanager
@@ -108,8 +121,11 @@ def played(browser, process, url, size, shadows, seconds):
     page.on('websocket', lambda socket: socket.on(
         'framereceived', lambda data: got.append(len(data))))
     page.goto(url)
-    page.get_by_role('alert').get_by_role('button').click()
     page.get_by_role('button', name='Pause').wait_for()
+    alert = page.get_by_role('alert').get_by_role('button')
+    if alert.count():
+        # The page says that there is no graphics card.
+        alert.click()
     if shadows:
         page.get_by_role('checkbox', name='shadows').check()
     page.wait_for_timeout(3000)
@@ -159,9 +175,9 @@ def line(what, numbers):
             f'{max(numbers):.2f} |\n')
 
 
-def smoothness(browser, bag, seconds):
-    """Return the table of how it plays."""
-    text = (f'{ABOUT_SMOOTHNESS}| {" | ".join(COLUMNS)} |\n|{len(COLUMNS) * "---|"}\n')
+def smoothness(browser, bag, seconds, about):
+    """Return the table of how it plays; about: what is told of it."""
+    text = f'{about}| {" | ".join(COLUMNS)} |\n|{len(COLUMNS) * "---|"}\n'
     with viewer(bag) as (process, url):
         for name, size, shadows in (*((*part, False) for part in SIZES.items()),
                                     ('desk, with shadows', SIZES['desk'], True)):
@@ -170,8 +186,16 @@ def smoothness(browser, bag, seconds):
     return text
 
 
-def measured(bag, rounds, seconds):
-    """Return both tables."""
+def renderer(browser):
+    """Return what draws in a browser, as WebGL calls it."""
+    page = browser.new_page()
+    name = page.evaluate(RENDERER)
+    page.close()
+    return name
+
+
+def measured(bag, rounds, seconds, angle):
+    """Return both tables, and what drew."""
     opened(bag)
     told, whole = zip(*(opened(bag) for _ in range(rounds)))
     text = line('its address, in the terminal', told)
@@ -179,19 +203,20 @@ def measured(bag, rounds, seconds):
     from chromium import chromium
 
     if chromium() is None:
-        return text
+        return text, 'nothing: there is no browser'
     from playwright.sync_api import sync_playwright
 
+    about = ABOUT_SMOOTHNESS.format(about_software=ABOUT_SOFTWARE if angle == SOFTWARE else '')
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
-            executable_path=chromium(),
-            args=['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'])
+            executable_path=chromium(), args=['--no-sandbox', *ANGLES[angle]])
         drawn(browser, bag)
         text += line('the first picture in a browser',
                      [drawn(browser, bag) for _ in range(rounds)])
-        text += smoothness(browser, bag, seconds)
+        text += smoothness(browser, bag, seconds, about)
+        name = renderer(browser)
         browser.close()
-    return text
+    return text, name
 
 
 def machine():
@@ -206,6 +231,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--rounds', type=int, default=7)
     parser.add_argument('--seconds', type=float, default=10.0)
+    parser.add_argument('--angle', choices=ANGLES, default=SOFTWARE,
+                        help='what the browser draws with')
+    parser.add_argument('--output', type=Path, default=Path(__file__).with_suffix('.md'))
     options = parser.parse_args()
     use_tests()
     with tempfile.TemporaryDirectory() as folder:
@@ -213,12 +241,15 @@ def main():
         subprocess.run([sys.executable, '-m', 'dynsim_ros.cli.simulate', 'sphere_on_spring', '-q',
                         '--duration', '60', '--set', 'rate=1000', '--output', bag], check=True)
         load = os.getloadavg()[0]
-        tables = measured(bag, options.rounds, options.seconds)
+        tables, drawer = measured(bag, options.rounds, options.seconds, options.angle)
         size = bag.stat().st_size / 1e6
-    text = HEAD.format(seconds=60, size=size, messages='540 000', machine=machine(),
-                       date=time.strftime('%Y-%m-%d'), load=f'{load:.1f}') + tables
+    arguments = '' if options.angle == SOFTWARE else (
+        f" ARGS='--angle {options.angle} --output FILE'")
+    text = HEAD.format(command=f'make bench-view{arguments}', seconds=60, size=size,
+                       messages='540 000', machine=machine(), date=time.strftime('%Y-%m-%d'),
+                       load=f'{load:.1f}', renderer=drawer) + tables
     print(text, end='')
-    Path(__file__).with_suffix('.md').write_text(text, encoding='utf-8')
+    options.output.write_text(text, encoding='utf-8')
 
 
 if __name__ == '__main__':

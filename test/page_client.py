@@ -36,7 +36,8 @@ class PageClient:
         self.nodes, self.notes = {}, []
         self.messages = 0
         self.is_complete = False
-        self.wait(lambda: self.is_complete)
+        # A page that is opened while the run is read is empty at first.
+        self.wait(lambda: self.is_complete and self._controls)
         self.send('ViewerCameraMessage', wxyz=(1.0, 0.0, 0.0, 0.0), position=(0.0, -3.0, 2.0),
                   fov=0.6, near=0.01, far=100.0, image_height=600, image_width=800,
                   look_at=(0.0, 0.0, 1.5), up_direction=(0.0, 0.0, 1.0))

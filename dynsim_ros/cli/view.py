@@ -62,19 +62,24 @@ def _view(args, signals) -> int:
 def _show_recorded(options, signals) -> int:
     # Imported here so that --help is quick.
     from ..scene import load_scene
-    from ..view.recorded_run import read_run
+    from ..view.recorded_run import check_run, read_run
     from ..view.server import serving
 
     scene = load_scene(options.scene) if options.scene else None
     if options.output:
         return _export(options, scene)
     with serving(options.host, options.port, os.path.basename(options.file)) as server:
+        check_run(options.file, scene)
+        # A browser takes longer to begin than the run to be read: it can do so meanwhile.
+        _tell(server, options)
         run = read_run(options.file, scene)
+        _warn(run.problem)
         from ..view.recorded import RecordedPage
 
-        page = RecordedPage(server, run)
+        # Whole, to browsers that are there already; and only the first camera moves theirs.
+        with server.atomic():
+            page = RecordedPage(server, run)
         signals.hold()
-        _tell(server, options, run.problem)
         page.run(signals.is_requested, page.frame)
     return 0
 
@@ -85,8 +90,7 @@ def _export(options, scene) -> int:
 
     run = read_run(options.file, scene)
     size = export(run, options.output)
-    if run.problem:
-        print(f'warning: {run.problem}', file=sys.stderr)
+    _warn(run.problem)
     if not options.quiet:
         print(f'{options.output}: {size / 1e6:.1f} MB')
     return 0
@@ -120,10 +124,15 @@ def _show_live(options, ros_args, signals) -> int:
         return process.returncode if has_ended() else 0
 
 
-def _tell(server, options, problem=None):
+def _warn(problem: str | None):
+    """Say what is wrong, if anything is."""
+    if problem:
+        print(f'warning: {problem}', file=sys.stderr)
+
+
+def _tell(server, options):
     """Say where the page is, and open it where there is a screen for that."""
-    for warning in filter(None, (problem, warning_of(options.host, options.live))):
-        print(f'warning: {warning}', file=sys.stderr)
+    _warn(warning_of(options.host, options.live))
     host = 'localhost' if options.host in ('localhost', '0.0.0.0', '::') else options.host
     url = f'http://{f"[{host}]" if ":" in host else host}:{server.get_port()}'
     if not options.quiet:

@@ -42,7 +42,7 @@ class Page:
         self._asked = SimpleQueue()
         space.look(server.initial_camera)
         self.stage = Stage(server.scene, scene, space, topics)
-        server.on_client_connect(self._look_upright)
+        server.on_client_connect(self._look_from_afar)
         panel = self.gui.add_panel()
         # Without icons: to look for one in viser's archive of 4285 takes 60 ms.
         with panel.add_tab('plots'):
@@ -54,14 +54,14 @@ class Page:
         self.when(self.plots.menu, self.plots.choose)
         self.gui.add_html(_STYLE)
 
-    async def _look_upright(self, client):
-        """Let a browser on a phone begin with what its controls do not cover."""
+    async def _look_from_afar(self, client):
+        """Let a browser whose view is higher than wide begin with all of it, not covered."""
         start, space = self.server.initial_camera.position, self.stage.space
 
         async def look(camera):
             # A page that is slow to start goes to where all begin once more.
             if camera.aspect < 1.0 and math.dist(camera.position, start) < 1e-3 * space.size:
-                space.look(camera, is_upright=True)
+                space.look(camera, camera.aspect)
 
         client.camera.on_update(look)
         await look(client.camera)

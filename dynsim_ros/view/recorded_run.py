@@ -12,7 +12,8 @@ from numpy.lib.recfunctions import structured_to_unstructured
 from .server import ViewError
 from .table import NUMBERS, Table
 from ..bag import load
-from ..bag.run_names import SCENE_ATTACHMENT
+from ..bag.reader import open_bag
+from ..bag.run_names import RUN_METADATA, SCENE_ATTACHMENT
 from ..scene import parse_scene, Scene, SceneError
 
 # What the topics of a run end with: others, such as commands, are of the same types.
@@ -44,6 +45,15 @@ class RecordedRun:
         return max(table.time[-1] for table in self.tables.values())
 
 
+def check_run(path, scene=None):
+    """Raise what read_run raises, as far as that can be known without reading all messages."""
+    with open_bag(path) as bag:
+        scene = scene or _scene(bag)
+        node = _node(bag, scene)
+        _must_have_poses(path, scene, node, [topic.removeprefix(f'{node}/')
+                                             for topic in bag.channels])
+
+
 def read_run(path, scene=None):
     """
     Return the RecordedRun in a bag; scene: to be used instead of the one in it, or None.
@@ -52,15 +62,20 @@ def read_run(path, scene=None):
     """
     bag = load(path)
     scene = scene or _scene(bag)
-    node = bag.info.get('node') or _node(bag, scene)
+    node = _node(bag, scene)
     tables = {topic.removeprefix(f'{node}/'): Table(bag.time(topic), _numbers(bag[topic]))
               for topic in bag if topic.startswith(f'{node}/') and topic.endswith(_ENDINGS)
               and bag.channels[topic].type_name in NUMBERS}
-    missing = [body.name for body in scene.bodies if f'{body.name}/pose' not in tables]
+    _must_have_poses(path, scene, node, tables)
+    return RecordedRun(scene, tables, bag.problem)
+
+
+def _must_have_poses(path, scene, node, topics):
+    """Raise ViewError unless the pose of each body is among topics, relative to the node."""
+    missing = [body.name for body in scene.bodies if f'{body.name}/pose' not in topics]
     if missing:
         raise ViewError(f'{path}: holds no pose of {", ".join(missing)} below {node or "a node"}; '
                         'record ~/<body>/pose, too')
-    return RecordedRun(scene, tables, bag.problem)
 
 
 def _numbers(values):
@@ -83,6 +98,9 @@ def _scene(bag):
 
 
 def _node(bag, scene):
-    """Return the name of the node whose topics a bag of another recorder holds, '' for none."""
+    """Return the name of the node whose topics a bag holds, '' for none."""
+    recorded = bag.metadata.get(RUN_METADATA, {}).get('node')
+    if recorded:
+        return recorded
     ending = f'/{scene.bodies[0].name}/pose'
     return next((name.removesuffix(ending) for name in bag.channels if name.endswith(ending)), '')

@@ -13,9 +13,9 @@ from ..scene import Box, Sphere
 # A run that is so many times as large as its bodies is looked at by following one of them.
 _FAR = 40.0
 _FOV = math.radians(35.0)
-# On an upright page: so many times as far off, and so many sizes above the middle of the page, as
-# the controls cover its lower part.
-_UPRIGHT_DISTANCE, _UPRIGHT_RISE = 1.3, 0.32
+# At most so many times as far off where the view is higher than wide. Where it is as slim as the
+# page of a phone, so many sizes above the middle: the controls cover its lower part.
+_FARTHEST, _SLIM, _RISE = 1.3, 0.6, 0.32
 
 
 class Space:
@@ -77,9 +77,10 @@ class Space:
         return api.add_light_directional(
             '/sun', intensity=1.6, position=self.middle + self.size * np.array([0.7, -0.8, 2.0]))
 
-    def look(self, camera, is_upright=False):
-        """Set where a viser camera begins; is_upright: the page is that of a phone."""
-        rise, factor = (_UPRIGHT_RISE, _UPRIGHT_DISTANCE) if is_upright else (0.0, 1.0)
+    def look(self, camera, aspect=1.0):
+        """Set where a viser camera begins; aspect: width of the view over its height."""
+        rise = _RISE if aspect < _SLIM else 0.0
+        factor = min(max(1.0 / aspect, 1.0), _FARTHEST)
         target = self.middle - (0.0, 0.0, (0.08 + rise) * self.size)
         distance = 0.95 * factor * self.size / math.tan(0.5 * _FOV)
         direction = np.array([0.55, -0.78, 0.30])

@@ -4,6 +4,9 @@
 
 from accessibility import faults
 from bag_numbers import row
+from dynsim_ros.view.recorded import RecordedPage
+from dynsim_ros.view.recorded_run import read_run
+from dynsim_ros.view.server import serving
 import numpy as np
 import pytest
 from seen import body, DESKTOP, is_blue, PHONE, picture
@@ -157,3 +160,38 @@ def test_values_under_the_mouse_are_those_of_the_bag(page, bag):
     rows = [row(bag, 'sphere/pose', time + shift)[:3] for shift in (-0.005, 0.0, 0.005)]
     assert any(all(abs(shown[axis][0] - value) <= shown[axis][1]
                    for axis, value in zip('xyz', values)) for values in rows), (shown, rows)
+
+
+@pytest.mark.parametrize('size', [DESKTOP, PHONE], ids=['desktop', 'phone'])
+def test_who_is_there_before_the_run_is_read_sees_the_same(open_page, bag, size):
+    def camera(page_opened):
+        """Return what the browser that came last looks at, once there is one more."""
+        count = len(seen)
+        for _ in range(300):
+            clients = server.get_clients()
+            if len(clients) > count:
+                break
+            page_opened.wait_for_timeout(100)
+        seen.append(clients[max(clients)].camera)
+        return seen[-1]
+
+    seen = []
+    with serving('localhost', None, 'run') as server:
+        url = f'http://localhost:{server.get_port()}'
+        early = open_page(url, size)
+        first = camera(early)
+        with server.atomic():
+            RecordedPage(server, read_run(bag))
+        early.get_by_role('button', name='Pause').wait_for()
+        late = open_page(url, size)
+        late.get_by_role('button', name='Pause').wait_for()
+        second = camera(late)
+        for _ in range(100):
+            if np.allclose(first.position, second.position, atol=1e-3):
+                break
+            late.wait_for_timeout(100)
+        assert np.allclose(first.position, second.position, atol=1e-3)
+        assert np.allclose(first.look_at, second.look_at, atol=1e-3)
+        # what the controls of a phone do not cover is higher up
+        is_lower = second.look_at[2] < server.initial_camera.look_at[2] - 0.1
+        assert is_lower == (size == PHONE)
