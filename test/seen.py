@@ -24,6 +24,12 @@ def picture(page, part='canvas[data-engine]'):
     return imageio.v3.imread(page.screenshot(clip=box))[..., :3]
 
 
+def aspect(page):
+    """Return the width of the 3-D view over its height."""
+    box = page.locator('canvas[data-engine]').bounding_box()
+    return box['width'] / box['height']
+
+
 def is_blue(picture):
     """Return where a picture (…, 3) is as blue as the body: (…) of bool."""
     red, green, blue = np.moveaxis(picture.astype(int), -1, 0)

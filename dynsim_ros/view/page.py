@@ -55,13 +55,20 @@ class Page:
         self.gui.add_html(_STYLE)
 
     async def _look_from_afar(self, client):
-        """Let a browser whose view is higher than wide begin with all of it, not covered."""
-        start, space = self.server.initial_camera.position, self.stage.space
+        """Let a browser look at all, however wide its view is, until somebody turns it."""
+        space, placed = self.stage.space, self.server.initial_camera.position
+
+        def is_at(camera, position):
+            return math.dist(camera.position, position) < 1e-3 * space.size
 
         async def look(camera):
+            nonlocal placed
+            position, _ = space.viewpoint(camera.aspect)
             # A page that is slow to start goes to where all begin once more.
-            if camera.aspect < 1.0 and math.dist(camera.position, start) < 1e-3 * space.size:
+            untouched = is_at(camera, placed) or is_at(camera, self.server.initial_camera.position)
+            if untouched and not is_at(camera, position):
                 space.look(camera, camera.aspect)
+                placed = position
 
         client.camera.on_update(look)
         await look(client.camera)

@@ -15,7 +15,7 @@ _FAR = 40.0
 _FOV = math.radians(35.0)
 # At most so many times as far off where the view is higher than wide. Where it is as slim as the
 # page of a phone, so many sizes above the middle: the controls cover its lower part.
-_FARTHEST, _SLIM, _RISE = 1.3, 0.6, 0.32
+_FARTHEST, _SLIM, _RISE = 1.3, 0.55, 0.32
 
 
 class Space:
@@ -77,17 +77,20 @@ class Space:
         return api.add_light_directional(
             '/sun', intensity=1.6, position=self.middle + self.size * np.array([0.7, -0.8, 2.0]))
 
-    def look(self, camera, aspect=1.0):
-        """Set where a viser camera begins; aspect: width of the view over its height."""
+    def viewpoint(self, aspect=1.0):
+        """Return from where to look, and to where; aspect: width of the view over its height."""
         rise = _RISE if aspect < _SLIM else 0.0
         factor = min(max(1.0 / aspect, 1.0), _FARTHEST)
         target = self.middle - (0.0, 0.0, (0.08 + rise) * self.size)
         distance = 0.95 * factor * self.size / math.tan(0.5 * _FOV)
         direction = np.array([0.55, -0.78, 0.30])
+        return target + distance * direction / np.linalg.norm(direction), target
+
+    def look(self, camera, aspect=1.0):
+        """Set where a viser camera begins."""
         camera.fov = _FOV
         camera.near, camera.far = 1e-3 * self.size, 300.0 * self.size
-        camera.position = target + distance * direction / np.linalg.norm(direction)
-        camera.look_at = target
+        camera.position, camera.look_at = self.viewpoint(aspect)
 
 
 def _extent(body):

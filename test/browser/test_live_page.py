@@ -8,7 +8,7 @@ from dynsim_ros.view.space import Space
 import numpy as np
 import pytest
 from scene_topics import forces, POSE, WRENCH, xyz
-from seen import body, Camera, DESKTOP, PHONE, picture, read_news
+from seen import aspect, body, Camera, DESKTOP, PHONE, picture
 
 HAND = np.array([0.0, 0.0, 2.0])
 SPACE = Space.of_start(load_scene('sphere_on_spring'))
@@ -55,15 +55,10 @@ def drag_until(page, client, take, is_answered):
     """
     Take hold of something and drag it, again where nothing answers, as a user would.
 
-    take: does it; a browser that is too busy to have drawn it there yet has no hold of it, and one
-    that has been for long is asked for the page once more.
+    take: does it; a browser that is too busy to have drawn it there yet has no hold of it.
     """
     try:
         for left in reversed(range(5)):
-            if left == 1:
-                page.reload()
-                read_news(page)
-                page.get_by_text('real-time factor').wait_for()
             take()
             try:
                 return client.wait(is_answered, timeout=12.0)
@@ -90,10 +85,10 @@ def test_dragging_the_gizmo_moves_the_anchor(page, client, size, shift):
     page.set_viewport_size(size)
     page.wait_for_timeout(1000)
     camera, place = Camera(), None
-    SPACE.look(camera)
 
     def take():
         nonlocal place
+        SPACE.look(camera, aspect(page))
         client.more('hand/pose')
         place = hand(client)
         grip = place + (0.0, 0.0, 0.18 * SPACE.size)

@@ -162,36 +162,70 @@ def test_values_under_the_mouse_are_those_of_the_bag(page, bag):
                    for axis, value in zip('xyz', values)) for values in rows), (shown, rows)
 
 
-@pytest.mark.parametrize('size', [DESKTOP, PHONE], ids=['desktop', 'phone'])
-def test_who_is_there_before_the_run_is_read_sees_the_same(open_page, bag, size):
-    def camera(page_opened):
-        """Return what the browser that came last looks at, once there is one more."""
-        count = len(seen)
-        for _ in range(300):
-            clients = server.get_clients()
-            if len(clients) > count:
-                break
-            page_opened.wait_for_timeout(100)
-        seen.append(clients[max(clients)].camera)
-        return seen[-1]
+def is_lower(camera, server):
+    """Return whether a camera looks at what is on a phone: the controls cover the lower part."""
+    return camera.look_at[2] < server.initial_camera.look_at[2] - 0.1
 
-    seen = []
+
+def soon(page, condition):
+    """Return whether condition() is true, waiting for it up to ten seconds."""
+    for _ in range(100):
+        if condition():
+            return True
+        page.wait_for_timeout(100)
+    return False
+
+
+@pytest.fixture
+def newcomer(open_page):
+    """Give a function that opens a page of a server, and returns it and its camera."""
+    pages = []
+
+    def newcomer(server, size):
+        known = set(server.get_clients())
+        page = open_page(f'http://localhost:{server.get_port()}', size)
+        pages.append(page)
+        assert soon(page, lambda: set(server.get_clients()) > known)
+        (new,) = set(server.get_clients()) - known
+        return page, server.get_clients()[new].camera
+
+    yield newcomer
+    # else they would look for the next server at this port
+    for page in pages:
+        page.close()
+
+
+@pytest.mark.parametrize('size', [DESKTOP, PHONE], ids=['desktop', 'phone'])
+def test_who_is_there_before_the_run_is_read_sees_the_same(newcomer, bag, size):
     with serving('localhost', None, 'run') as server:
-        url = f'http://localhost:{server.get_port()}'
-        early = open_page(url, size)
-        first = camera(early)
+        early, first = newcomer(server, size)
         with server.atomic():
             RecordedPage(server, read_run(bag))
         early.get_by_role('button', name='Pause').wait_for()
-        late = open_page(url, size)
-        late.get_by_role('button', name='Pause').wait_for()
-        second = camera(late)
-        for _ in range(100):
-            if np.allclose(first.position, second.position, atol=1e-3):
-                break
-            late.wait_for_timeout(100)
-        assert np.allclose(first.position, second.position, atol=1e-3)
-        assert np.allclose(first.look_at, second.look_at, atol=1e-3)
-        # what the controls of a phone do not cover is higher up
-        is_lower = second.look_at[2] < server.initial_camera.look_at[2] - 0.1
-        assert is_lower == (size == PHONE)
+        late, second = newcomer(server, size)
+        assert soon(late, lambda: np.allclose(first.position, second.position, atol=1e-3)
+                    and np.allclose(first.look_at, second.look_at, atol=1e-3))
+        assert soon(late, lambda: is_lower(second, server) == (size == PHONE))
+
+
+def test_view_goes_with_the_page_until_it_is_turned(newcomer, bag):
+    with serving('localhost', None, 'run') as server:
+        with server.atomic():
+            RecordedPage(server, read_run(bag))
+        page, camera = newcomer(server, DESKTOP)
+        for size in (PHONE, DESKTOP):
+            page.set_viewport_size(size)
+            assert soon(page, lambda size=size: is_lower(camera, server) == (size == PHONE))
+        before = camera.position
+        box = page.locator('canvas[data-engine]').bounding_box()
+        x, y = box['x'] + 0.2 * box['width'], box['y'] + 0.1 * box['height']
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 100.0, y, steps=3)
+        page.mouse.up()
+        assert soon(page, lambda: not np.allclose(camera.position, before, atol=0.1))
+        page.set_viewport_size(PHONE)
+        assert soon(page, lambda: camera.aspect < 0.5)
+        # for as long as it takes to answer
+        page.wait_for_timeout(500)
+        assert not is_lower(camera, server)
