@@ -53,7 +53,7 @@ class Template:
         self.size = len(content)
         self.content = bytes(content)
         self.padding = tuple(padding)
-        self._pack = struct.Struct(_layout(self.places.values(), self.size)).pack
+        self._pack = struct.Struct(layout(self.places.values(), self.size)).pack
         self._constant = np.frombuffer(self.content, np.uint8)
 
     def _place(self, leaf, start, item, blocks):
@@ -85,7 +85,7 @@ class Template:
         return (np.frombuffer(numbers, np.uint8) | self._constant).tobytes()
 
 
-def _layout(places, size):
+def layout(places, size):
     """Return the format of the struct module for leaves at some Places and zeros between them."""
     parts, end = ['<'], 0
     for start, item in places:

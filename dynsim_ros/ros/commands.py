@@ -10,14 +10,18 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from .context import one_line
 from .qos import profile
 from ..messages.channel import WORLD
-from ..messages.commands import anchor_topic, PARAMETER_TOPIC, push_topic
+from ..messages.commands import anchor_topic, PARAMETER_TOPIC, POINT, push_topic, WRENCH
 from ..messages.qos import COMMAND
+from ..messages.reading import Reading
 from ..scene import SceneError
 from ..simulation import CommandError, MoveAnchor, PushBody
 from ..simulation.commands import checked
 
 # At most one warning about refused commands in so many seconds.
 _THROTTLE = 1.0
+_FRAMES = WORLD, ''
+_POINT = tuple(f'point.{axis}' for axis in 'xyz')
+_WRENCH = tuple(f'wrench.{part}.{axis}' for part in ('force', 'torque') for axis in 'xyz')
 
 
 class Commands:
@@ -34,23 +38,35 @@ class Commands:
         self._mailbox = mailbox
         scene = run.simulator.scene
         for anchor in scene.anchors:
-            self._subscribe(PointStamped, anchor_topic(anchor.name),
-                            lambda message, name=anchor.name: self._move(name, message.header,
-                                                                         message.point))
+            self._read(PointStamped, anchor_topic(anchor.name), Reading(POINT, _POINT, _FRAMES),
+                       lambda point, name=anchor.name: MoveAnchor(name, point))
         for body in scene.bodies:
-            self._subscribe(WrenchStamped, push_topic(body.name),
-                            lambda message, name=body.name: self._push(name, message))
+            self._read(WrenchStamped, push_topic(body.name), Reading(WRENCH, _WRENCH, _FRAMES),
+                       lambda wrench, name=body.name: PushBody(name, wrench[:3], wrench[3:]))
         self._subscribe(ParameterMessage, PARAMETER_TOPIC, self._set)
 
     def drag(self, topic, anchor, header, point):
         """Move an anchor to where it was dragged to, as told on some topic."""
-        self._guarded(topic, lambda: self._move(anchor, header, point))
+        self._guarded(topic, lambda: self._carry_out(
+            header.frame_id, MoveAnchor(anchor, numbers(point))))
 
-    def _subscribe(self, message_type, topic, callback):
+    def _read(self, message_type, topic, reading, make):
+        """Subscribe to a topic whose bytes are read, and made a command of."""
+        # To make an object of a message takes as long as all that is done with it.
+        def take(data):
+            try:
+                frame_id, found = reading(data)
+            except ValueError as error:
+                raise CommandError(str(error)) from None
+            self._carry_out(frame_id, make(found))
+
+        self._subscribe(message_type, topic, take, raw=True)
+
+    def _subscribe(self, message_type, topic, callback, raw=False):
         self._node.create_subscription(
             message_type, f'~/{topic}',
             lambda message: self._guarded(topic, lambda: callback(message)), profile(COMMAND),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies())
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(), raw=raw)
 
     def _guarded(self, topic, action):
         try:
@@ -60,13 +76,9 @@ class Commands:
             self._node.get_logger().warning(f'~/{topic} refused: {error}',
                                             throttle_duration_sec=_THROTTLE)
 
-    def _move(self, anchor, header, point):
-        check_frame(header)
-        self._tell(MoveAnchor(anchor, numbers(point)))
-
-    def _push(self, body, message):
-        check_frame(message.header)
-        self._tell(PushBody(body, numbers(message.wrench.force), numbers(message.wrench.torque)))
+    def _carry_out(self, frame_id, command):
+        check_frame(frame_id)
+        self._tell(command)
 
     def _tell(self, command):
         """Have a command carried out if it is valid: which names there are never changes."""
@@ -83,10 +95,10 @@ class Commands:
             raise CommandError(result.reason)
 
 
-def check_frame(header):
+def check_frame(frame_id):
     """Raise CommandError unless a command is in the world frame (or names none)."""
-    if header.frame_id not in ('', WORLD):
-        raise CommandError(f"frame '{header.frame_id}' is not known; give it in '{WORLD}'")
+    if frame_id not in _FRAMES:
+        raise CommandError(f"frame '{frame_id}' is not known; give it in '{WORLD}'")
 
 
 def numbers(vector):

@@ -52,7 +52,7 @@ class StandardEntities:
         """Put one where it is to be, moving as it is to move; its acceleration follows."""
         member, state = self._known(request.entity).member, request.state
         try:
-            check_frame(state.header)
+            check_frame(state.header.frame_id)
         except SceneError as error:
             raise Refusal(FAILED, str(error)) from None
         # Later versions of the standard tell which parts are meant.

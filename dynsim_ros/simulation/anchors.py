@@ -48,10 +48,11 @@ class Anchors:
 
     def rebase(self, time_ns):
         """Let `since` be an instant before the next change."""
-        if time_ns != self.since:
+        # Most anchors are at rest, which is seen sooner than added up.
+        if time_ns != self.since and self.motion[:, 3:].any():
             # In place: the kernels hold on to this array.
             self.motion[:] = self.motion_at(time_ns)
-            self.since = time_ns
+        self.since = time_ns
 
     def next_change(self):
         """Return the instant at which the next moving anchor arrives [ns], or None."""

@@ -7,6 +7,7 @@ import math
 from geometry_msgs.msg import PointStamped, WrenchStamped
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterValue
+from rclpy.serialization import serialize_message
 from scene_topics import DIAGNOSTICS, SPHERE
 
 DOUBLE, TEXT, NO_SUCH_TYPE = 3, 4, 42
@@ -40,12 +41,20 @@ def wrench(force=0.0, torque=0.0, frame='world'):
     return 'sphere/wrench_command', command
 
 
+def cut_off(command):
+    """Return a command as bytes whose end is missing, as no well-behaved program sends them."""
+    topic, message = command
+    return topic, serialize_message(message)[:-8]
+
+
 def parameter(name, kind, **value):
     return 'parameter_command', Parameter(name=name, value=ParameterValue(type=kind, **value))
 
 
 WITH_WARNING = [
     (point(frame='map'), "frame 'map' is not known; give it in 'world'"),
+    (cut_off(point()), 'geometry_msgs/msg/PointStamped: the data end after 44 bytes, within or '
+     'before geometry_msgs/msg/PointStamped.point.z'),
     (point(math.nan), 'hand: position[0]: nan is not finite; give a number in m'),
     (wrench(-2e9), 'sphere: force[2]: -2e+09 N is out of range: -1e+09 to 1e+09 N'),
     (parameter('spring.stiffnes', DOUBLE, double_value=1.0),
@@ -54,6 +63,9 @@ WITH_WARNING = [
 WRONG = [command for command, _ in WITH_WARNING] + [
     point(-math.inf),
     point(1e7),
+    cut_off(point()),
+    cut_off(point(frame='map')),
+    cut_off(wrench()),
     wrench(frame='sphere'),
     wrench(math.inf),
     wrench(0.0, math.nan),
