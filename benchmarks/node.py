@@ -101,8 +101,9 @@ def main():
     load = os.getloadavg()[0]
     results = run(rounds, options.quick)
     mark.close()
-    results = {'about': node_tables.about(load, rounds), 'rows': node_tables.rows(results),
-               **results}
+    # As they are kept, so that tables and plot can be made of that again.
+    results = node_tables.rounded({'about': node_tables.about(load, rounds),
+                                   'rows': node_tables.rows(results), **results})
     text = node_tables.markdown(results)
     print(text)
     if options.output or not options.quick:

@@ -139,15 +139,14 @@ def table(rows):
 
 
 def number(value):
-    return '–' if value is None else f'{value:.0f}' if abs(value) >= 1000 else f'{value:.3g}'
+    return '–' if value is None else f'{value:.0f}' if abs(value) >= 999.5 else f'{value:.3g}'
 
 
 def write(folder, results, text):
     """Write node.json, node.md and node.png into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / 'node.md').write_text(text, encoding='utf-8')
-    (folder / 'node.json').write_text(json.dumps(rounded(results), indent=1) + '\n',
-                                      encoding='utf-8')
+    (folder / 'node.json').write_text(json.dumps(results, indent=1) + '\n', encoding='utf-8')
     plot(results, folder / 'node.png')
 
 
