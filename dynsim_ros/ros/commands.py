@@ -37,17 +37,19 @@ class Commands:
         self._run = run
         self._mailbox = mailbox
         scene = run.simulator.scene
+        # To lay a message out takes longer than to read many: once for all topics of a type.
+        points, wrenches = Reading(POINT, _POINT, _FRAMES), Reading(WRENCH, _WRENCH, _FRAMES)
         for anchor in scene.anchors:
-            self._read(PointStamped, anchor_topic(anchor.name), Reading(POINT, _POINT, _FRAMES),
+            self._read(PointStamped, anchor_topic(anchor.name), points,
                        lambda point, name=anchor.name: MoveAnchor(name, point))
         for body in scene.bodies:
-            self._read(WrenchStamped, push_topic(body.name), Reading(WRENCH, _WRENCH, _FRAMES),
+            self._read(WrenchStamped, push_topic(body.name), wrenches,
                        lambda wrench, name=body.name: PushBody(name, wrench[:3], wrench[3:]))
         self._subscribe(ParameterMessage, PARAMETER_TOPIC, self._set)
 
     def drag(self, topic, anchor, header, point):
         """Move an anchor to where it was dragged to, as told on some topic."""
-        self._guarded(topic, lambda: self._carry_out(
+        self._guarded(topic, lambda: self._tell(
             header.frame_id, MoveAnchor(anchor, numbers(point))))
 
     def _read(self, message_type, topic, reading, make):
@@ -58,7 +60,7 @@ class Commands:
                 frame_id, found = reading(data)
             except ValueError as error:
                 raise CommandError(str(error)) from None
-            self._carry_out(frame_id, make(found))
+            self._tell(frame_id, make(found))
 
         self._subscribe(message_type, topic, take, raw=True)
 
@@ -76,12 +78,9 @@ class Commands:
             self._node.get_logger().warning(f'~/{topic} refused: {error}',
                                             throttle_duration_sec=_THROTTLE)
 
-    def _carry_out(self, frame_id, command):
-        check_frame(frame_id)
-        self._tell(command)
-
-    def _tell(self, command):
+    def _tell(self, frame_id, command):
         """Have a command carried out if it is valid: which names there are never changes."""
+        check_frame(frame_id)
         command = checked(command, self._run.simulator.scene)
         self._mailbox.tell(lambda: self._run.carry_out(command))
 

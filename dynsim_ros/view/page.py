@@ -56,7 +56,8 @@ class Page:
 
     async def _look_from_afar(self, client):
         """Let a browser look at all, however wide its view is, until somebody turns it."""
-        space, placed = self.stage.space, self.server.initial_camera.position
+        space, start = self.stage.space, self.server.initial_camera.position
+        placed = start
 
         def is_at(camera, position):
             return math.dist(camera.position, position) < 1e-3 * space.size
@@ -65,8 +66,8 @@ class Page:
             nonlocal placed
             position, _ = space.viewpoint(camera.aspect)
             # A page that is slow to start goes to where all begin once more.
-            untouched = is_at(camera, placed) or is_at(camera, self.server.initial_camera.position)
-            if untouched and not is_at(camera, position):
+            is_untouched = is_at(camera, placed) or is_at(camera, start)
+            if is_untouched and not is_at(camera, position):
                 space.look(camera, camera.aspect)
                 placed = position
 

@@ -77,7 +77,7 @@ class Space:
         return api.add_light_directional(
             '/sun', intensity=1.6, position=self.middle + self.size * np.array([0.7, -0.8, 2.0]))
 
-    def viewpoint(self, aspect=1.0):
+    def viewpoint(self, aspect):
         """Return from where to look, and to where; aspect: width of the view over its height."""
         rise = _RISE if aspect < _SLIM else 0.0
         factor = min(max(1.0 / aspect, 1.0), _FARTHEST)
