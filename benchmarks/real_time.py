@@ -27,6 +27,7 @@ CPU = float(max(os.sched_getaffinity(0)))
 KINDS = {
     'the naive node': ('naive', {}),
     'as it is by default': ('ours', {}),
+    '`real_time.priority` 0': ('ours', {'real_time__priority': 0.0}),
     '`real_time.spin` 0.0001': ('ours', {'real_time__spin': 1e-4}),
     '`real_time.spin` 0.0003': ('ours', {'real_time__spin': 3e-4}),
     '`real_time.priority` 50': ('ours', {'real_time__priority': 50.0}),

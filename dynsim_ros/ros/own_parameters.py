@@ -52,8 +52,9 @@ OWN = {
                       Quantity('s', 'simulated time', minimum=0.0, maximum=1e9)),
     'real_time.spin': Own(0.0, 'how long before each deadline to wait busily [s]',
                           Quantity('s', 'busy wait', minimum=0.0, maximum=0.01), read_only=True),
-    'real_time.priority': Own(0.0, 'priority of the ticking thread in SCHED_FIFO, 0 = none',
-                              Quantity('', 'priority', minimum=0.0, maximum=99.0),
+    'real_time.priority': Own(-1.0, 'priority of the ticking thread in SCHED_FIFO, 0 = none, -1 = '
+                              '1 while it mostly sleeps, where that is permitted',
+                              Quantity('', 'priority', minimum=-1.0, maximum=99.0),
                               read_only=True),
     'real_time.cpu': Own(-1.0, 'number of the processor for the ticking thread, -1 = any',
                          Quantity('', 'processor', minimum=-1.0, maximum=1023.0),

@@ -10,12 +10,15 @@ import ctypes
 import os
 import platform
 import sys
+import time
 
 _PR_SET_TIMERSLACK = 29
 _MCL_CURRENT, _MCL_FUTURE = 1, 2
 # sched_setattr and sched_getattr, for which older C libraries have no function.
 _SYSTEM_CALLS = {'x86_64': (314, 315), 'aarch64': (274, 275)}
 _RESET_ON_FORK = 1
+# The lowest priority of SCHED_FIFO, and how long it is looked at who deserves it [ns].
+_LOWEST, _LATELY = 1, 100_000_000
 # The shortest turn that the system grants [ns].
 _TURN = 100_000
 
@@ -63,6 +66,42 @@ def be_first(priority):
         return (f'real_time.priority: {priority} is not granted ({_reason(error)}); allow it with '
                 'an rtprio limit, or run with CAP_SYS_NICE')
     return None
+
+
+def be_like_others():
+    """Let the calling thread have no priority any longer, and short turns."""
+    os.sched_setscheduler(0, os.SCHED_OTHER | os.SCHED_RESET_ON_FORK, os.sched_param(0))
+    take_short_turns()
+
+
+class Precedence:
+    """
+    The lowest priority of SCHED_FIFO, for a thread as long as it mostly sleeps.
+
+    Where it is not permitted nothing happens.
+    """
+
+    def __init__(self):
+        self._is_permitted, self._is_taken = True, False
+        self._since = self._worked = 0
+
+    def take_or_give_back(self):
+        """Let the calling thread have it if it slept more than it worked lately, else not."""
+        now = time.monotonic_ns()
+        if now - self._since < _LATELY:
+            return
+        worked = time.thread_time_ns()
+        if 2 * (worked - self._worked) > now - self._since:
+            self.give_back()
+        elif self._is_permitted and not self._is_taken:
+            self._is_permitted = self._is_taken = be_first(_LOWEST) is None
+        self._since, self._worked = now, worked
+
+    def give_back(self):
+        """Let the calling thread be as others are."""
+        if self._is_taken:
+            be_like_others()
+            self._is_taken = False
 
 
 def stay_on(cpu):

@@ -9,7 +9,8 @@ from .bursts import Bursts
 from .histogram import Histogram
 from .inbox import Mailbox
 from .pacing import LONGEST_LAG, LONGEST_PERIOD, SECOND
-from .real_time import be_first, end_timer_slack, lock_memory, stay_on, take_short_turns
+from .real_time import (be_first, end_timer_slack, lock_memory, Precedence, stay_on,
+                        take_short_turns)
 
 # How long ticks may run before commands get their turn.
 BATCH = SECOND // 200
@@ -38,6 +39,8 @@ class Ticker:
         self.lateness = Histogram()
         self._options, self._warn = options, warn
         self._spin = options['real_time.spin']
+        # None where the thread keeps the priority that it was given, if any.
+        self._precedence = Precedence() if options['real_time.priority'] < 0.0 else None
         self._bursts = Bursts(run, pacer, self.mailbox, self.lateness, self._spin)
         self._ticks_in_one_go = 1
         self._is_ending = False
@@ -63,7 +66,10 @@ class Ticker:
                 self.mailbox.hush()
                 if self._carry_out():
                     self._show()
-                if not self._bursts.go():
+                if self._bursts.go():
+                    if self._precedence is not None:
+                        self._precedence.take_or_give_back()
+                else:
                     seconds = self._turn()
                     if seconds > self._spin:
                         self.mailbox.wait(seconds - self._spin)
@@ -140,6 +146,9 @@ class Ticker:
         wanted: how many it is to the first one that somebody waits for.
         """
         run, pacer = self._run, self._pacer
+        if self._precedence is not None:
+            # It may be that there is no end of this: others have to get on, too.
+            self._precedence.give_back()
         while True:
             count = min(due, wanted, self._ticks_in_one_go)
             is_wanted = count == wanted

@@ -98,6 +98,10 @@ class Quantity:
         if not _is_list(value) or len(value) != count:
             raise SceneError(f'{name}: {shown(value)} is not a list of {count} numbers'
                              + (f' in {self.unit}' if self.unit else ''))
+        # Nearly all are as they should be, which takes less to see than what is wrong with others.
+        if all(type(element) is float and self.minimum <= element <= self.maximum
+               for element in value):
+            return tuple(value)
         # The order of a quaternion depends on who gave it, its letters do not.
         labels = [f'.{letter}' for letter in 'wxyz'] if count == 4 else ['[0]', '[1]', '[2]']
         return tuple(self._number(name + label, element)

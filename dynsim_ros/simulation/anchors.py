@@ -23,6 +23,13 @@ class Anchors:
         self.since = 0
         self._targets = {}
         self._commanded = {}
+        # None where it is not known.
+        self._are_at_rest = None
+
+    def go_on(self, since, motion):
+        """Let `since` and `motion` be these."""
+        self.since, self._are_at_rest = since, None
+        self.motion[:] = motion
 
     def motion_at(self, time_ns):
         """Return (n, 6) position and velocity at an instant before the next change."""
@@ -48,8 +55,10 @@ class Anchors:
 
     def rebase(self, time_ns):
         """Let `since` be an instant before the next change."""
+        if self._are_at_rest is None:
+            self._are_at_rest = not self.motion[:, 3:].any()
         # Most anchors are at rest, which is seen sooner than added up.
-        if time_ns != self.since and self.motion[:, 3:].any():
+        if time_ns != self.since and not self._are_at_rest:
             # In place: the kernels hold on to this array.
             self.motion[:] = self.motion_at(time_ns)
         self.since = time_ns
@@ -69,10 +78,12 @@ class Anchors:
         """Put anchor i at a position, at rest."""
         self.motion[i] = (*position, 0.0, 0.0, 0.0)
         self._targets.pop(i, None)
+        if not self._are_at_rest:
+            self._are_at_rest = None
 
     def set_velocity(self, i, velocity):
         """Let anchor i go on from where it is at a velocity: (3,) [m/s]."""
-        self.motion[i, 3:] = velocity
+        self._set_off(i, velocity)
         self._targets.pop(i, None)
 
     def command(self, i, position, linear, tick_ns):
@@ -89,5 +100,9 @@ class Anchors:
             self.place(i, position)
             return
         duration = max(min(interval, LONGEST_MOVE), tick_ns)
-        self.motion[i, 3:] = (np.array(position) - self.motion[i, :3]) / (duration * 1e-9)
+        self._set_off(i, (np.array(position) - self.motion[i, :3]) / (duration * 1e-9))
         self._targets[i] = (self.since + duration, position)
+
+    def _set_off(self, i, velocity):
+        self.motion[i, 3:] = velocity
+        self._are_at_rest = None

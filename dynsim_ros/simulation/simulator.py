@@ -216,9 +216,8 @@ class Simulator:
         self._reference_energy = float(memory['reference_energy'])
         self._push_ends.update((self._known(body), int(end))
                                for body, end in memory['push_ends_ns'].items())
-        self._anchors.since = int(memory['anchors']['since_ns'])
-        self._anchors.motion[:] = _numbers(memory['anchors']['motion'],
-                                           self._anchors.motion.shape)
+        self._anchors.go_on(int(memory['anchors']['since_ns']),
+                            _numbers(memory['anchors']['motion'], self._anchors.motion.shape))
         for i, (target, commanded) in enumerate(memory['anchors']['under_way']):
             self._anchors.put_under_way(i, target, commanded)
         self._recall_steps(memory)

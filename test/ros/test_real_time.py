@@ -4,6 +4,8 @@
 
 import os
 from pathlib import Path
+import subprocess
+import sys
 
 from live_node import start_refused, with_parameters
 from scene_topics import POSE
@@ -36,6 +38,47 @@ def test_all_of_it(start, connect):
     node.stop()
 
 
+def first_of_all(node):
+    """Return how many threads of a node have the lowest priority of SCHED_FIFO."""
+    return sum(os.sched_getscheduler(task) == FIFO and os.sched_getparam(task).sched_priority == 1
+               for task in tasks(node))
+
+
+def is_permitted():
+    """Tell whether a process may have that here."""
+    trial = 'import os; os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))'
+    return not subprocess.run([sys.executable, '-c', trial], stderr=subprocess.DEVNULL,
+                              check=False).returncode
+
+
+def test_the_ticking_thread_goes_first_while_it_mostly_sleeps(start, connect):
+    node = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4')
+    client = connect(node)
+    client.listen({'sphere/pose': POSE})
+    client.wait(lambda: first_of_all(node) == is_permitted())
+    client.configure({'real_time_factor': 0.0})
+    client.wait(lambda: first_of_all(node) == 0)
+    client.configure({'real_time_factor': 1.0})
+    client.wait(lambda: first_of_all(node) == is_permitted())
+    assert 'real_time.priority' not in node.output
+    node.stop()
+
+
+def test_it_does_not_where_it_waits_busily_or_is_told_not_to(start, connect):
+    busy = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4', '-p', 'real_time.spin:=0.001')
+    client = connect(busy)
+    client.listen({'sphere/pose': POSE})
+    client.more('sphere/pose', 500)
+    assert first_of_all(busy) == 0
+    busy.stop()
+    node = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4', '-p', 'real_time.priority:=0.0')
+    client = connect(node)
+    client.listen({'sphere/pose': POSE})
+    client.more('sphere/pose', 500)
+    assert first_of_all(node) == 0
+    node.stop()
+
+
 def turn(task):
     """Return how long a turn of a thread is before another one has its own [ns]."""
     lines = Path(f'/proc/{task}/sched').read_text().splitlines()
@@ -43,7 +86,7 @@ def turn(task):
 
 
 def test_the_ticking_thread_has_short_turns(start, connect):
-    node = start('-p', 'integrator:=rk4')
+    node = start('-p', 'integrator:=rk4', '-p', 'real_time.priority:=0.0')
     client = connect(node)
     client.listen({'sphere/pose': POSE})
     client.more('sphere/pose', 3)
