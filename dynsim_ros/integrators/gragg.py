@@ -30,6 +30,8 @@ SEQUENCES = (
     Sequences(3e-11, (6, 8, 10, 12, 14, 16, 22), dense_substeps=FINER),
     # More of them than stages: their weights let a quarter of the rounding through.
     Sequences(0.0, (8, 10, 12, 14, 16, 18, 26), 6, dense_substeps=FINER))
+# Bodies that hang on each other pass on what is rounded: it counts sooner.
+SEQUENCES_OF_SEVERAL = (*SEQUENCES[:2], SEQUENCES[2]._replace(least=2e-10), SEQUENCES[3])
 
 
 def gragg_schedule(substeps=SEQUENCES[1].substeps, stages=None):

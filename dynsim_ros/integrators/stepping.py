@@ -26,7 +26,8 @@ def explicit_method(model, tolerance):
     """Return the Adaptive that extrapolation means for a model."""
     if needs_no_velocity(model):
         return methods.stormer_extrapolation(sequences_for(tolerance, stormer.SEQUENCES))
-    return methods.gragg_extrapolation(sequences_for(tolerance, gragg.SEQUENCES))
+    sequences = gragg.SEQUENCES if model.several is None else gragg.SEQUENCES_OF_SEVERAL
+    return methods.gragg_extrapolation(sequences_for(tolerance, sequences))
 
 
 def stiff_method(model, springs, tolerance):
