@@ -78,11 +78,11 @@ class Precedence:
     """
     The lowest priority of SCHED_FIFO, for a thread as long as it mostly sleeps.
 
-    Where it is not permitted nothing happens.
+    Where it is not wanted or not permitted nothing happens.
     """
 
-    def __init__(self):
-        self._is_permitted, self._is_taken = True, False
+    def __init__(self, is_wanted):
+        self._is_possible, self._is_taken = is_wanted, False
         self._since = self._worked = 0
 
     def take_or_give_back(self):
@@ -93,8 +93,8 @@ class Precedence:
         worked = time.thread_time_ns()
         if 2 * (worked - self._worked) > now - self._since:
             self.give_back()
-        elif self._is_permitted and not self._is_taken:
-            self._is_permitted = self._is_taken = be_first(_LOWEST) is None
+        elif self._is_possible and not self._is_taken:
+            self._is_possible = self._is_taken = be_first(_LOWEST) is None
         self._since, self._worked = now, worked
 
     def give_back(self):

@@ -39,8 +39,7 @@ class Ticker:
         self.lateness = Histogram()
         self._options, self._warn = options, warn
         self._spin = options['real_time.spin']
-        # None where the thread keeps the priority that it was given, if any.
-        self._precedence = Precedence() if options['real_time.priority'] < 0.0 else None
+        self._precedence = Precedence(options['real_time.priority'] < 0.0)
         self._bursts = Bursts(run, pacer, self.mailbox, self.lateness, self._spin)
         self._ticks_in_one_go = 1
         self._is_ending = False
@@ -67,8 +66,7 @@ class Ticker:
                 if self._carry_out():
                     self._show()
                 if self._bursts.go():
-                    if self._precedence is not None:
-                        self._precedence.take_or_give_back()
+                    self._precedence.take_or_give_back()
                 else:
                     seconds = self._turn()
                     if seconds > self._spin:
@@ -146,9 +144,8 @@ class Ticker:
         wanted: how many it is to the first one that somebody waits for.
         """
         run, pacer = self._run, self._pacer
-        if self._precedence is not None:
-            # It may be that there is no end of this: others have to get on, too.
-            self._precedence.give_back()
+        # It may be that there is no end of this: others have to get on, too.
+        self._precedence.give_back()
         while True:
             count = min(due, wanted, self._ticks_in_one_go)
             is_wanted = count == wanted

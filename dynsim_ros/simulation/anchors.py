@@ -23,12 +23,12 @@ class Anchors:
         self.since = 0
         self._targets = {}
         self._commanded = {}
-        # None where it is not known.
-        self._are_at_rest = None
+        # Whether all are known to be.
+        self._are_at_rest = False
 
     def go_on(self, since, motion):
         """Let `since` and `motion` be these."""
-        self.since, self._are_at_rest = since, None
+        self.since, self._are_at_rest = since, False
         self.motion[:] = motion
 
     def motion_at(self, time_ns):
@@ -55,7 +55,7 @@ class Anchors:
 
     def rebase(self, time_ns):
         """Let `since` be an instant before the next change."""
-        if self._are_at_rest is None:
+        if not self._are_at_rest:
             self._are_at_rest = not self.motion[:, 3:].any()
         # Most anchors are at rest, which is seen sooner than added up.
         if time_ns != self.since and not self._are_at_rest:
@@ -78,8 +78,6 @@ class Anchors:
         """Put anchor i at a position, at rest."""
         self.motion[i] = (*position, 0.0, 0.0, 0.0)
         self._targets.pop(i, None)
-        if not self._are_at_rest:
-            self._are_at_rest = None
 
     def set_velocity(self, i, velocity):
         """Let anchor i go on from where it is at a velocity: (3,) [m/s]."""
@@ -105,4 +103,4 @@ class Anchors:
 
     def _set_off(self, i, velocity):
         self.motion[i, 3:] = velocity
-        self._are_at_rest = None
+        self._are_at_rest = False

@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 from live_node import start_refused, with_parameters
+import pytest
 from scene_topics import POSE
 
 
@@ -55,23 +56,19 @@ def test_the_ticking_thread_goes_first_while_it_mostly_sleeps(start, connect):
     node = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4')
     client = connect(node)
     client.listen({'sphere/pose': POSE})
-    client.wait(lambda: first_of_all(node) == is_permitted())
+    expected = is_permitted()
+    client.wait(lambda: first_of_all(node) == expected)
     client.configure({'real_time_factor': 0.0})
     client.wait(lambda: first_of_all(node) == 0)
     client.configure({'real_time_factor': 1.0})
-    client.wait(lambda: first_of_all(node) == is_permitted())
+    client.wait(lambda: first_of_all(node) == expected)
     assert 'real_time.priority' not in node.output
     node.stop()
 
 
-def test_it_does_not_where_it_waits_busily_or_is_told_not_to(start, connect):
-    busy = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4', '-p', 'real_time.spin:=0.001')
-    client = connect(busy)
-    client.listen({'sphere/pose': POSE})
-    client.more('sphere/pose', 500)
-    assert first_of_all(busy) == 0
-    busy.stop()
-    node = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4', '-p', 'real_time.priority:=0.0')
+@pytest.mark.parametrize('option', ['real_time.spin:=0.001', 'real_time.priority:=0.0'])
+def test_it_does_not_where_it_waits_busily_or_is_told_not_to(start, connect, option):
+    node = start('-p', 'rate:=1000.0', '-p', 'integrator:=rk4', '-p', option)
     client = connect(node)
     client.listen({'sphere/pose': POSE})
     client.more('sphere/pose', 500)
