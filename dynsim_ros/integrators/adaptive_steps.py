@@ -9,6 +9,7 @@ from .adaptive import (advance, BASE, BUDGET_SPENT, CLOCK_SIZE, COUNTS_SIZE, END
 from .entry import entry
 from .memory import DENSE_SIZE, new_memory, STAGES
 from .stiffness import EXPLICIT_REACH, spring_rates
+from ..physics.structure import with_structure
 
 # Farther ahead than any run goes [ns].
 FAR = 2 ** 62
@@ -98,7 +99,7 @@ class AdaptiveSteps(Walk):
         self.origin = 0
         # The first and the last arguments of advance, which stay as they are.
         self._arguments = (
-            (model, drive, method.tableaux, method.power, method.share * tolerance,
+            (with_structure(model), drive, method.tableaux, method.power, method.share * tolerance,
              spring_rates(model)[0] / EXPLICIT_REACH),
             (self.clock, self.counts, self.states, new_memory(size, springs), self._dense))
         self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))

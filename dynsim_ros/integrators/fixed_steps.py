@@ -6,6 +6,7 @@ import numpy as np
 
 from .entry import entry
 from .memory import new_memory
+from ..physics.structure import with_structure
 
 
 class FixedSteps:
@@ -22,8 +23,8 @@ class FixedSteps:
     def __init__(self, advance, step_ns, model, drive, size, springs):
         self._memory = new_memory(size, springs)
         self.step_ns = step_ns
-        self._model, self._drive = model, drive
-        self._advance = entry(advance, model, drive, 0, 0, 0, np.zeros(size), self._memory)
+        self._model, self._drive = with_structure(model), drive
+        self._advance = entry(advance, self._model, drive, 0, 0, 0, np.zeros(size), self._memory)
         self.removed = 0.0
         self.steps = 0
 

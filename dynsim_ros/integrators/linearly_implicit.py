@@ -59,7 +59,7 @@ def damping_of(damping, s):
 def gather_group(several, connections, bodies, rigid, p, q, stiffness, natural_length, epsilon,
                  damping, anchors, moving, works, first, t, h, y, springs):
     """Write geometry and pull of the springs of a group to `springs`, from number `first` on."""
-    for s in range(group_size(connections, stiffness)):
+    for s in range(group_size(connections, p)):
         length, u, p_turn, q_turn, p_rate, q_rate = spring_motion(
             several, bodies, rigid, p, q, epsilon, anchors, moving, t, s, y)
         j = SPRING_SIZE * (first + s)

@@ -38,7 +38,7 @@ def gather_group(several, connections, bodies, rigid, general_body, p, q, stiffn
                  damping, anchors, moving, first, spring_bodies, t, y, responses, batch, memory,
                  springs):
     """Write the geometry of the springs of a group at four stages."""
-    for s in range(group_size(connections, stiffness)):
+    for s in range(group_size(connections, p)):
         _, u, p_turn, q_turn, _, _ = spring_motion(several, bodies, rigid, p, q, epsilon,
                                                    anchors, moving, t, s, y)
         place = springs + STAGES * STAGE_SPRING_SIZE * (first + s)

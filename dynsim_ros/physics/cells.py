@@ -16,6 +16,7 @@ from numba.core.typing.templates import AbstractTemplate, signature
 from numba.extending import intrinsic, lower_builtin, models, overload, register_model
 import numpy as np
 
+from .known import KnownType
 from .lanes import ALIGNMENT, COUNT, FLOAT, LANES, VECTOR
 
 
@@ -105,19 +106,30 @@ SINGLE = 25
 
 def number_cells(several, memory, place, size):
     """
-    Return Cells for `size` numbers: in registers for a single body, else in memory[place:].
+    Return Cells for `size` numbers: in registers where the bodies are known, else in memory.
 
-    several: the number of bodies where there are more than one, else None.
+    several: as in Model; place: where in the memory.
     """
     return [0.0] * max(size, SINGLE)
+
+
+def _known_size(several):
+    """Return the most that a method keeps at one place, of the type of Model.several."""
+    if isinstance(several, types.NoneType):
+        return SINGLE
+    if isinstance(several, types.BaseTuple) and isinstance(several[0], KnownType):
+        bodies, rigid = several
+        return 6 * bodies.number + 7 * rigid.number + 4
+    return None
 
 
 # Inlined: what they reserve belongs to the function that calls them.
 
 @overload(number_cells, inline='always')
 def _number_cells(several, memory, place, size):
-    if isinstance(several, types.NoneType):
-        return lambda several, memory, place, size: _reserve_numbers(SINGLE)
+    count = _known_size(several)
+    if count is not None:
+        return lambda several, memory, place, size: _reserve_numbers(count)
     return lambda several, memory, place, size: _view_numbers(memory, place)
 
 
@@ -128,6 +140,7 @@ def lane_cells(several, memory, place, size):
 
 @overload(lane_cells, inline='always')
 def _lane_cells(several, memory, place, size):
-    if isinstance(several, types.NoneType):
-        return lambda several, memory, place, size: _reserve_lanes(SINGLE)
+    count = _known_size(several)
+    if count is not None:
+        return lambda several, memory, place, size: _reserve_lanes(count)
     return lambda several, memory, place, size: _view_lanes(memory, place)

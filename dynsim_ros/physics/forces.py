@@ -15,7 +15,8 @@ from .air_resistance import relative_velocity
 from .energy import power
 from .fused import fused
 from .jit import formula
-from .kinematics import attachment_arm, attachment_position, attachment_rate
+from .kinematics import attachment_position, attachment_rate
+from .offset import offset_arm
 from .spring_damper import (damper_tension, length_and_direction, length_and_inverse_square,
                             tension_per_extension)
 from .state import (ARM, CORRECTION, EXCESS, omega_at, quaternion, quaternion_at, REACH,
@@ -44,7 +45,7 @@ def particle_motion(bodies, i, y):
 def arm_of(bodies, i, offset, s, y):
     """Return the arm of the attachment point of spring s on body i, in world: (3,) [m]."""
     if offset is not None:
-        return attachment_arm(quaternion(y, quaternion_at(bodies) + 4 * i), at(offset[s], 0))
+        return offset_arm(quaternion(y, quaternion_at(bodies) + 4 * i), offset, s)
     return at(y, ARM)
 
 
@@ -183,11 +184,23 @@ def with_damper(several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_
 
 
 @formula
-def group_size(connections, stiffness):
+def group_size(connections, p):
     """Return how many springs a group has; known when compiled where there is only one."""
     if connections is not None:
-        return stiffness.shape[0]
+        return ends_size(p.anchor, p.particle, p.body)
     return 1
+
+
+@formula
+def ends_size(anchor, particle, body):
+    """Return how many ends there are; as in SpringEnds."""
+    if anchor is not None:
+        return len(anchor)
+    if particle is not None:
+        return len(particle)
+    if body is not None:
+        return len(body)
+    return 0
 
 
 @formula
@@ -218,7 +231,7 @@ def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_
     have to wait for the root and the division.
     """
     work = work_at(bodies, rigid)
-    for s in range(group_size(connections, stiffness)):
+    for s in range(group_size(connections, p)):
         r, p_arm, q_arm = spring_ends(several, bodies, p, q, anchors, moving, t, s, y)
         r = kept_reach(is_kept, r, y)
         length, inverse_square = length_and_inverse_square(r, epsilon[s])

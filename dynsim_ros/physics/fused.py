@@ -24,7 +24,7 @@ def fused(a, b, c):
     if any(isinstance(x, np.ndarray) for x in (a, b, c)):
         return _fused_each(a, b, c).astype(float)
     if all(isinstance(x, (float, int)) for x in (a, b, c)):
-        return _fused(a, b, c)
+        return fused_numbers(a, b, c)
     return a * b + c
 
 
@@ -54,8 +54,16 @@ def _fused_by_c():
     return found
 
 
-_fused = _fused_by_c() or fused_by_fractions
-_fused_each = np.frompyfunc(_fused, 3, 1)
+def rounded_twice(a, b, c):
+    """Return a b + c as Python computes it: a tenth of the time."""
+    return a * b + c
+
+
+fused_numbers = _fused_by_c() or fused_by_fractions
+_fused_each = np.frompyfunc(fused_numbers, 3, 1)
+# What stands in plain Python for what serves for Lanes, too: to the same bits, or in less time.
+EXACTLY = {'fused': fused_numbers, 'root': math.sqrt}
+QUICKLY = {'fused': rounded_twice, 'root': math.sqrt}
 
 
 @intrinsic

@@ -117,10 +117,15 @@ def only_loading():
         yield
 
 
+# Without reference counting (_nrt): the kernels allocate nothing, and counting the arrays of
+# a model at every step took three quarters of the time of a step.
+_OPTIONS = {'error_model': 'numpy', 'nogil': True, 'fastmath': False, '_nrt': False}
+# For an overload that is large: to be inlined wherever it is used.
+INLINED = {**_OPTIONS, 'forceinline': True}
+
+
 def _compiled(function, **more):
-    # Without reference counting (_nrt): the kernels allocate nothing, and counting the arrays of
-    # a model at every step took three quarters of the time of a step.
-    options = {'error_model': 'numpy', 'nogil': True, 'fastmath': False, '_nrt': False, **more}
+    options = {**_OPTIONS, **more}
     if numba.config.DISABLE_JIT:
         function.py_func = function
         return function
@@ -162,18 +167,26 @@ def formula(function):
     return compiled
 
 
-@cache
-def plain(function):
+def plain(function, **instead):
     """
     Return a formula, or a function that calls some, as Python that is Python all the way down.
 
-    To the same bits, in about half the time: nothing goes by way of what could be compiled.
+    In about half the time: nothing goes by way of what could be compiled. instead: functions that
+    are called instead of those of the same names, such as EXACTLY and QUICKLY in fused.
     """
-    function = getattr(function, 'py_func', function)
-    names = {name: plain(value) for name, value in function.__globals__.items()
-             if isinstance(value, _Formula) and name in function.__code__.co_names}
-    return FunctionType(function.__code__, function.__globals__ | names, function.__name__,
-                        function.__defaults__, function.__closure__)
+    @cache
+    def translated(function):
+        function = getattr(function, 'py_func', function)
+        names = {name: translated(value) for name, value in function.__globals__.items()
+                 if name in function.__code__.co_names and _is_ours(value)}
+        return FunctionType(function.__code__, function.__globals__ | names | instead,
+                            function.__name__, function.__defaults__, function.__closure__)
+
+    return translated(function)
+
+
+def _is_ours(value):
+    return isinstance(value, (_Formula, FunctionType)) and value.__module__.startswith(__package__)
 
 
 def part(function):
@@ -186,7 +199,6 @@ def part(function):
     if numba.config.DISABLE_JIT:
         function.py_func = function
         return function
-    inlined = numba.njit(inline='always', error_model='numpy', nogil=True, fastmath=False,
-                         _nrt=False)(function)
+    inlined = numba.njit(inline='always', **_OPTIONS)(function)
     inlined.__class__ = _Formula
     return inlined

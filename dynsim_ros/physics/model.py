@@ -28,7 +28,7 @@ class SpringEnds(NamedTuple):
     Where one end of each spring of a group is: at anchors, at particles or on rigid bodies.
 
     Exactly one of anchor, particle and body: (n,) indices, the others None; offset: (n, 3)
-    body-fixed [m] where it is body, None where the state has the arm (see arms).
+    body-fixed [m] where it is body, or AxisOffset, None where the state has the arm (see arms).
     """
 
     anchor: np.ndarray | None
@@ -67,19 +67,20 @@ class Model(NamedTuple):
     """
     What the kernels know of a scene.
 
-    Rigid bodies, `rigid` of them, come before particles. several: the number of bodies, None for
-    a single one: the kernels then need no loop and no memory. mass: (bodies,) [kg]; round_body:
-    (n,) indices of the bodies whose inertia is the same about every axis, round_inertia: (n,)
-    [kg m^2], or None; general_body: (m,) indices of the others, inertia and inverse_inertia:
-    (m, 3, 3) in body axes, or None; weight: (bodies, 3) force of gravity in world [N] or None;
-    springs: tuple of SpringGroup or None; connections: the number of springs, None for a single
-    one (or none); spring_bodies: (springs, 2) index of the body at P and at Q of each, -1 at
-    an anchor; air: ModelAir or None.
+    Rigid bodies, `rigid` of them, come before particles. several: how many bodies and how many of
+    them are rigid, None for a single one: the kernels then need no loop and no memory. mass:
+    (bodies,) [kg]; round_body: (n,) indices of the bodies whose inertia is the same about every
+    axis, round_inertia: (n,) [kg m^2], or None; general_body: (m,) indices of the others, inertia
+    and inverse_inertia: (m, 3, 3) in body axes, or None; weight: (bodies, 3) force of gravity in
+    world [N] or None; springs: tuple of SpringGroup or None; connections: the number of springs,
+    None for a single one (or none); spring_bodies: (springs, 2) index of the body at P and at Q of
+    each, -1 at an anchor; air: ModelAir or None. Where the structure is known when kernels are
+    compiled, several and all indices are Known: see structure.
     """
 
     mass: np.ndarray
     rigid: int
-    several: int | None
+    several: tuple | None
     round_body: np.ndarray | None
     round_inertia: np.ndarray | None
     general_body: np.ndarray | None
@@ -113,7 +114,7 @@ def build_model(scene):
     groups = _spring_groups(scene, springs, bodies)
     return Model(
         mass=np.array([body.mass for body in bodies]), rigid=len(inertias),
-        several=len(bodies) if len(bodies) > 1 else None,
+        several=(len(bodies), len(inertias)) if len(bodies) > 1 else None,
         round_body=round_body if len(round_body) else None,
         round_inertia=np.array([inertias[i] for i in round_body]) if len(round_body) else None,
         general_body=general_body if len(general_body) else None,

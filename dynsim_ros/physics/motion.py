@@ -6,13 +6,14 @@ From a state to forces, accelerations and rates: the right-hand side of the moti
 States are arrays or Cells, of numbers or of Lanes. Absent terms (None) are not in the code.
 """
 
-from numba import literal_unroll
+from numba import types
+from numba.extending import overload
 
 from .advancing import put_angular_acceleration, put_linear_acceleration
 from .equations_of_motion import angular_acceleration
 from .forces import (apply_springs, begin_works, put_powers, with_linear_drag, with_push,
                      with_rotational_drag, with_weight)
-from .jit import formula
+from .jit import formula, INLINED
 from .rotation import quaternion_rate_world, rotation_matrix
 from .state import (counts, omega_at, put_quaternion, quaternion, quaternion_at, velocity_at,
                     work_at)
@@ -25,15 +26,36 @@ def matrix_at(matrices, i):
     return (at(matrices[i, 0], 0), at(matrices[i, 1], 0), at(matrices[i, 2], 0))
 
 
-@formula
 def apply_all_springs(several, connections, bodies, rigid, springs, anchors, moving, works, t, y,
                       out):
     """Add forces and moments of all springs with their dampers."""
-    if springs is not None:
-        for group in literal_unroll(springs):
-            apply_springs(several, connections, bodies, rigid, group.p, group.q, group.stiffness,
-                          group.natural_length, group.epsilon, group.damping, group.is_kept,
-                          anchors, moving, works, t, y, out)
+    for group in springs or ():
+        apply_group(several, connections, bodies, rigid, group, anchors, moving, works, t, y, out)
+
+
+@overload(apply_all_springs, jit_options=INLINED)
+def _apply_all_springs(several, connections, bodies, rigid, springs, anchors, moving, works, t, y,
+                       out):
+    def nothing(several, connections, bodies, rigid, springs, anchors, moving, works, t, y, out):
+        pass
+
+    # No loop, of which the compiler would not know that it can be written out.
+    def first_and_others(several, connections, bodies, rigid, springs, anchors, moving, works, t,
+                         y, out):
+        apply_group(several, connections, bodies, rigid, springs[0], anchors, moving, works, t, y,
+                    out)
+        apply_all_springs(several, connections, bodies, rigid, springs[1:], anchors, moving, works,
+                          t, y, out)
+
+    return nothing if isinstance(springs, types.NoneType) or not len(springs) else first_and_others
+
+
+@formula
+def apply_group(several, connections, bodies, rigid, group, anchors, moving, works, t, y, out):
+    """Add forces and moments of one SpringGroup."""
+    apply_springs(several, connections, bodies, rigid, group.p, group.q, group.stiffness,
+                  group.natural_length, group.epsilon, group.damping, group.is_kept, anchors,
+                  moving, works, t, y, out)
 
 
 @formula
@@ -63,7 +85,8 @@ def put_from_outside(bodies, rigid, weight, air, pushes, works, y, out):
         # -0 and not 0: adding to it changes no number, so that the compiler leaves that out.
         pushed = with_push(pushes, v, works, work, y, (-0.0, -0.0, -0.0), out)
         put(out, v, in_air(air, v, works, work, y, with_weight(weight, i, pushed), out))
-    for w in range(omega_at(bodies, rigid), work, 3):
+    for i in range(rigid):
+        w = omega_at(bodies, rigid) + 3 * i
         pushed = with_push(pushes, w, works, work, y, (-0.0, -0.0, -0.0), out)
         put(out, w, turning_in_air(air, w, works, work, y, pushed, out))
 
@@ -81,7 +104,7 @@ def accelerate_round(several, bodies, rigid, round_body, round_inertia, forces, 
 def chosen(several, index):
     """Return how many bodies an index holds; known when compiled for a single body."""
     if several is not None:
-        return index.shape[0]
+        return len(index)
     return 1
 
 

@@ -19,9 +19,12 @@ from .vector import cross, dot, norm, scale
 def rotation_matrix(q):
     """Return R (three rows) of the unit quaternion q; the columns are b_x, b_y, b_z in world."""
     w, x, y, z = q
-    return ((1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
-            (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
-            (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)))
+    return ((fused(-2.0, fused(y, y, z * z), 1.0), 2.0 * fused(x, y, -w * z),
+             2.0 * fused(x, z, w * y)),
+            (2.0 * fused(x, y, w * z), fused(-2.0, fused(x, x, z * z), 1.0),
+             2.0 * fused(y, z, -w * x)),
+            (2.0 * fused(x, z, -w * y), 2.0 * fused(y, z, w * x),
+             fused(-2.0, fused(x, x, y * y), 1.0)))
 
 
 @formula
@@ -31,8 +34,8 @@ def rotate(q, a):
     u = (q[1], q[2], q[3])
     c = cross(u, a)
     d = cross(u, c)
-    return (a[0] + 2.0 * (w * c[0] + d[0]), a[1] + 2.0 * (w * c[1] + d[1]),
-            a[2] + 2.0 * (w * c[2] + d[2]))
+    return (fused(2.0, fused(w, c[0], d[0]), a[0]), fused(2.0, fused(w, c[1], d[1]), a[1]),
+            fused(2.0, fused(w, c[2], d[2]), a[2]))
 
 
 @formula

@@ -10,9 +10,12 @@ A particle has no place among quaternions and angular velocities.
 
 import math
 
+from numba import types
+from numba.extending import overload
 import numpy as np
 
 from .jit import formula
+from .known import Known, KnownType
 from .model import body_order
 from .rotation import quaternion_norm
 
@@ -24,18 +27,8 @@ REACH, EXCESS, CORRECTION = ARM + 3, ARM + 6, ARM + 7
 
 
 @formula
-def body_count(several):
-    """Return the number of bodies; known when compiled where it is one."""
-    if several is not None:
-        return several
-    return 1
-
-
-@formula
-def rigid_count(several, rigid, round_body, general_body):
-    """Return the number of rigid bodies; known when compiled where there is one body."""
-    if several is not None:
-        return rigid
+def single_rigid_count(round_body, general_body):
+    """Return how many rigid bodies there are, one or none, where there is one body."""
     if round_body is not None:
         return 1
     if general_body is not None:
@@ -43,19 +36,37 @@ def rigid_count(several, rigid, round_body, general_body):
     return 0
 
 
+def body_counts(several, round_body, general_body):
+    """Return (bodies, rigid bodies); known when compiled for a single body or a structure."""
+    return several or (1, single_rigid_count(round_body, general_body))
+
+
+@overload(body_counts)
+def _body_counts(several, round_body, general_body):
+    if isinstance(several, types.NoneType):
+        return lambda several, round_body, general_body: (
+            1, single_rigid_count(round_body, general_body))
+    return lambda several, round_body, general_body: several
+
+
 @formula
 def counts(model):
     """Return (bodies, rigid bodies)."""
-    return (body_count(model.several),
-            rigid_count(model.several, model.rigid, model.round_body, model.general_body))
+    return body_counts(model.several, model.round_body, model.general_body)
 
 
-@formula
 def moving_size(works, bodies, rigid):
     """Return how much of the state changes: all but the works where these are not counted."""
-    if works is not None:
-        return 6 * bodies + 7 * rigid + 4
-    return 6 * bodies + 7 * rigid
+    return work_at(bodies, rigid) + (0 if works is None else len(WORKS))
+
+
+@overload(moving_size)
+def _moving_size(works, bodies, rigid):
+    counted = 0 if isinstance(works, types.NoneType) else len(WORKS)
+    if isinstance(bodies, KnownType):
+        size = Known(6 * bodies.number + 7 * rigid.number + counted)
+        return lambda works, bodies, rigid: size
+    return lambda works, bodies, rigid: work_at(bodies, rigid) + counted
 
 
 @formula

@@ -58,13 +58,14 @@ def scale(s, a):
 @formula
 def dot(a, b):
     """Return the scalar product of a and b."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return fused(a[2], b[2], fused(a[1], b[1], a[0] * b[0]))
 
 
 @formula
 def cross(a, b):
     """Return the vector product a x b."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    return (fused(a[1], b[2], -(a[2] * b[1])), fused(a[2], b[0], -(a[0] * b[2])),
+            fused(a[0], b[1], -(a[1] * b[0])))
 
 
 @formula
@@ -82,9 +83,8 @@ def transform(matrix, a):
 @formula
 def transform_back(matrix, a):
     """Return the transpose of matrix times a; for a rotation matrix that is its inverse."""
-    return (matrix[0][0] * a[0] + matrix[1][0] * a[1] + matrix[2][0] * a[2],
-            matrix[0][1] * a[0] + matrix[1][1] * a[1] + matrix[2][1] * a[2],
-            matrix[0][2] * a[0] + matrix[1][2] * a[1] + matrix[2][2] * a[2])
+    x, y, z = matrix
+    return (dot((x[0], y[0], z[0]), a), dot((x[1], y[1], z[1]), a), dot((x[2], y[2], z[2]), a))
 
 
 @formula

@@ -74,7 +74,7 @@ def apply_at_ends(several, bodies, rigid, p, q, s, p_arm, q_arm, force, out):
 def apply_spring_forces(several, connections, bodies, rigid, p, q, stiffness, natural_length,
                         epsilon, anchors, t, y, out):
     """Add forces and moments of the springs of a group without their dampers, as on the sheet."""
-    for s in range(group_size(connections, stiffness)):
+    for s in range(group_size(connections, p)):
         length, u, _, p_arm, q_arm = sheet_motion(several, bodies, rigid, p, q, epsilon, anchors,
                                                   t, s, y)
         force = spring_force(stiffness[s], length, natural_length[s], u)
@@ -86,7 +86,7 @@ def apply_damper_forces(several, connections, bodies, rigid, p, q, epsilon, damp
                         out):
     """Add forces and moments of the dampers alone of one SpringGroup, as on the sheet."""
     if damping is not None:
-        for s in range(group_size(connections, damping)):
+        for s in range(group_size(connections, p)):
             _, u, rate, p_arm, q_arm = sheet_motion(several, bodies, rigid, p, q, epsilon, anchors,
                                                     t, s, y)
             force = damper_force(damping[s], rate, u)

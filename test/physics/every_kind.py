@@ -18,6 +18,7 @@ from dynsim_ros.scene import parse_scene
 from dynsim_ros.simulation.layout import Layout
 from newton_euler import NewtonEuler, rotation_of
 import numpy as np
+from random_states import difference, random_state
 from scipy.spatial.transform import Rotation
 
 ENDS = {'a1': 'anchor', 'a2': 'anchor', 'ball': 'rigid', 'crate': 'rigid', 'dot': 'particle',
@@ -57,25 +58,6 @@ def every_spring():
                 line += f', to_offset: [{0.01 * number}, -0.1, 0.3]'
             lines.append(line + '}')
     return '\n'.join(lines)
-
-
-def random_state(layout, random):
-    """Return a state and the same as NewtonEuler has it."""
-    y, motion = np.zeros(layout.size), {}
-    for body in layout.bodies:
-        y[layout.position(body)], y[layout.velocity(body)] = random.normal(size=(2, 3))
-        motion[body] = [y[layout.position(body)], y[layout.velocity(body)]]
-        if layout.orientation(body) is not None:
-            turn = Rotation.random(None, random)
-            y[layout.orientation(body)] = np.roll(turn.as_quat(), 1)
-            y[layout.angular_velocity(body)] = 3 * random.normal(size=3)
-            motion[body] += [turn, y[layout.angular_velocity(body)].copy()]
-    return y, motion
-
-
-def difference(found, expected):
-    """Return the largest difference, relative to the largest expected number."""
-    return float(np.abs(np.subtract(found, expected)).max() / np.abs(expected).max())
 
 
 def quaternion_rate(q, omega):

@@ -48,7 +48,7 @@ def test_the_error_is_of_the_size_of_the_tolerance(name, method, tolerances):
     assert 0.8 < order < 1.2
 
 
-@pytest.mark.parametrize('tolerance', [1.7e-10, 5e-11])
+@pytest.mark.parametrize('tolerance', [1.5e-10, 5e-11])
 @pytest.mark.parametrize('name', ['chain', 'four_bodies', 'feather_and_anvil'])
 def test_little_is_rounded_where_bodies_hang_on_each_other(name, tolerance):
     scene, times, motions = load(name)

@@ -46,11 +46,13 @@ from .spring_line import along_spring, is_along, least_length, spring_line, Spri
 from .torque_free import torque_free, TorqueFree
 from .torque_free_rates import torque_free_in_full
 from .whirl import constant_of_whirl, reaches, whirl_series, whirled
+from ...physics.fused import QUICKLY
 from ...physics.jit import plain
 
 # What kernels do not call.
-cancels, is_along, keeps_axis, least_length, reaches, spring_line, spring_size = map(plain, (
-    cancels, is_along, keeps_axis, least_length, reaches, spring_line, spring_size))
+cancels, is_along, keeps_axis, least_length, reaches, spring_line, spring_size = (
+    plain(each, **QUICKLY) for each in (
+        cancels, is_along, keeps_axis, least_length, reaches, spring_line, spring_size))
 
 __all__ = [
     'SpringLine', 'TorqueFree', 'along_spring', 'cancels', 'centre_of_springs',

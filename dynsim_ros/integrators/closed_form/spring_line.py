@@ -20,7 +20,7 @@ from .oscillator import oscillation, responses
 from ...physics.elementary import arc_tangent, area_tangent
 from ...physics.jit import formula
 from ...physics.two_sum import quotient_in_two
-from ...physics.vector import add, cross, dot, norm, scale, subtract
+from ...physics.vector import add, dot, norm, scale, subtract
 
 
 class SpringLine(NamedTuple):
@@ -47,8 +47,9 @@ class SpringLine(NamedTuple):
 @formula
 def is_along(direction, vector):
     """Return whether a vector has no part across a direction, to the last bit; both (3,)."""
-    across = cross(direction, vector)
-    return across[0] == 0.0 and across[1] == 0.0 and across[2] == 0.0
+    u, v = direction, vector
+    # The fused cross product of parallel vectors is what rounding leaves, not always zero.
+    return u[1] * v[2] == u[2] * v[1] and u[2] * v[0] == u[0] * v[2] and u[0] * v[1] == u[1] * v[0]
 
 
 @formula

@@ -19,12 +19,12 @@ from .hold import holds_of
 from .imbalance import is_unbalanced
 from ..closed_form import cancels, spring_size
 from ...physics import motion, rotation, vector
+from ...physics.fused import EXACTLY, QUICKLY
 from ...physics.jit import plain
 
-_apply_forces = plain(motion.apply_forces)
-_rotate = plain(rotation.rotate)
-_add, _dot, _norm, _scale, _subtract = map(plain, (
-    vector.add, vector.dot, vector.norm, vector.scale, vector.subtract))
+_apply_forces = plain(motion.apply_forces, **EXACTLY)
+_add, _dot, _norm, _rotate, _scale, _subtract = (plain(each, **QUICKLY) for each in (
+    vector.add, vector.dot, vector.norm, rotation.rotate, vector.scale, vector.subtract))
 # An eigenvalue that is above minus this, relative to the stiffnesses, counts as not negative: in
 # an hour nothing visible comes of rounding there.
 _NEUTRAL = 1e-9
@@ -152,6 +152,9 @@ def _place(end, things):
 
 def _is_stable(rigid, holds, things):
     """Return whether no small displacement or turn sets energy free."""
+    if rigid == 0 and all(_stretch(hold, things) >= 0.0 for hold in holds):
+        # Springs that pull do not let particles go anywhere.
+        return True
     size = 3 * (len(things) + rigid)
     curvature, largest = np.zeros((size, size)), np.zeros(size)
     for hold in holds:
@@ -167,9 +170,19 @@ def _is_stable(rigid, holds, things):
     return _is_positive(curvature * scaling * scaling[:, np.newaxis] + _NEUTRAL * np.eye(size))
 
 
+def _way(hold, things):
+    """Return the vector to Q from P: (3,) [m]."""
+    return _subtract(_place(hold.q, things), _place(hold.p, things))
+
+
+def _stretch(hold, things):
+    """Return by how much a spring is longer than its natural length [m]."""
+    return _norm(_way(hold, things)) - hold.natural_length
+
+
 def _curvature(hold, rigid, things, size):
     """Return the second derivatives of a spring's energy; None where there are none."""
-    r = _subtract(_place(hold.q, things), _place(hold.p, things))
+    r = _way(hold, things)
     length = _norm(r)
     if length == 0.0 and hold.natural_length > 0.0:
         return None

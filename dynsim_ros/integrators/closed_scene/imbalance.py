@@ -5,9 +5,10 @@
 from .translations import drag_and_wind, forces
 from ..closed_form import spring_size
 from ...physics import rotation, vector
+from ...physics.fused import QUICKLY
 from ...physics.jit import plain
 
-_add, _norm, _rotate, _scale, _subtract = map(plain, (
+_add, _norm, _rotate, _scale, _subtract = (plain(each, **QUICKLY) for each in (
     vector.add, vector.norm, rotation.rotate, vector.scale, vector.subtract))
 # Of the sizes of its terms: a sum that is larger is no rounding.
 _PLAIN = 1e-9
