@@ -97,10 +97,12 @@ class AdaptiveSteps(Walk):
         self.states, self._dense = np.zeros((4, size)), np.zeros(kept * size)
         self.end = self.states[1]
         self.origin = 0
+        # What solves for all springs at once gains little by the structure.
+        is_explicit = method.tableaux.stiff is None and method.tableaux.radau is None
         # The first and the last arguments of advance, which stay as they are.
         self._arguments = (
-            (with_structure(model), drive, method.tableaux, method.power, method.share * tolerance,
-             spring_rates(model)[0] / EXPLICIT_REACH),
+            (with_structure(model) if is_explicit else model, drive, method.tableaux, method.power,
+             method.share * tolerance, spring_rates(model)[0] / EXPLICIT_REACH),
             (self.clock, self.counts, self.states, new_memory(size, springs), self._dense))
         self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))
         self._advance = None
