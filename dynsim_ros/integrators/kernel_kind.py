@@ -6,6 +6,8 @@ import numpy as np
 
 from .closed_scene import Recogniser
 from .methods import DEFAULT_METHOD
+from ..physics.known import Known, KnownIndex
+from ..physics.structure import with_structure
 
 
 def kernel_kind(settings, model, drive, state):
@@ -14,7 +16,7 @@ def kernel_kind(settings, model, drive, state):
 
     settings, model, drive: see new_steps; state: (size,) where it begins.
     """
-    kind = settings.integrator, _types(model), _types(drive)
+    kind = settings.integrator, _types(with_structure(model)), _types(drive)
     if settings.integrator != DEFAULT_METHOD:
         return kind
     # Without works, for which a kernel is called already to find out what is closed.
@@ -24,6 +26,8 @@ def kernel_kind(settings, model, drive, state):
 
 def _types(value):
     """Return the types of a value and its parts, as far as numba tells them apart."""
+    if isinstance(value, (Known, KnownIndex)):
+        return type(value), value
     if isinstance(value, tuple):
         return type(value), *map(_types, value)
     if isinstance(value, np.ndarray):

@@ -81,6 +81,15 @@ def test_which_changes_need_other_kernels(values, same):
     assert simulator.scene == SCENE
 
 
+@pytest.mark.parametrize('offset, same', [
+    ([0.0, 0.0, 0.03], True), ([0.0, 0.0, -0.03], True), ([0.0, 0.0, 0.0], True),
+    ([0.0, 0.05, 0.0], False), ([0.0, 0.05, 0.05], False)])
+def test_another_axis_needs_other_kernels_where_the_structure_is_known(offset, same):
+    simulator = Simulator(load_scene('double_pendulum_of_spheres'))
+    values = {'lower_spring.from_offset': offset}
+    assert (simulator.kernel_kind(values) == simulator.kernel_kind({})) is same
+
+
 def test_a_run_does_not_wait_for_another_thread_that_compiles():
     simulator = Simulator(SCENE, integrator='rk4')
     simulator.prepare()
