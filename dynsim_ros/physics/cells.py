@@ -18,6 +18,7 @@ import numpy as np
 
 from .known import KnownType
 from .lanes import ALIGNMENT, COUNT, FLOAT, LANES, VECTOR
+from .state import state_size
 
 
 class CellsType(types.Type):
@@ -119,7 +120,7 @@ def _known_size(several):
         return SINGLE
     if isinstance(several, types.BaseTuple) and isinstance(several[0], KnownType):
         bodies, rigid = several
-        return 6 * bodies.number + 7 * rigid.number + 4
+        return state_size(bodies.number, rigid.number)
     return None
 
 

@@ -64,7 +64,7 @@ def moving_size(works, bodies, rigid):
 def _moving_size(works, bodies, rigid):
     counted = 0 if isinstance(works, types.NoneType) else len(WORKS)
     if isinstance(bodies, KnownType):
-        size = Known(6 * bodies.number + 7 * rigid.number + counted)
+        size = Known(work_at(bodies.number, rigid.number) + counted)
         return lambda works, bodies, rigid: size
     return lambda works, bodies, rigid: work_at(bodies, rigid) + counted
 
