@@ -18,7 +18,7 @@ from .jit import formula
 from .kinematics import attachment_position, attachment_rate
 from .offset import offset_arm
 from .spring_damper import (damper_tension, length_and_direction, length_and_inverse_square,
-                            tension_per_extension)
+                            spring_tension)
 from .state import (ARM, CORRECTION, EXCESS, omega_at, quaternion, quaternion_at, REACH,
                     velocity_at, work_at)
 from .vector import accumulate_scaled, add, at, cross, dot, scale, subtract
@@ -172,15 +172,15 @@ def count_damper_work(works, work, damping, rate, inverse_square, out):
 
 @formula
 def with_damper(several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn, q_turn,
-                inverse_square, works, work, per_extension, extension, y, out):
-    """Return the force of a spring and its damper over r; count the damper's work."""
+                inverse_square, works, work, tension, extension, y, out):
+    """Return L times the tension of a spring and its damper; count the damper's work."""
     if damping is not None:
         p_rate, q_rate = end_rates(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn,
                                    q_turn, y)
         rate = q_rate - p_rate
         count_damper_work(works, work, damping[s], rate, inverse_square, out)
-        return fused(per_extension, extension, damper_tension(damping[s], rate) * inverse_square)
-    return per_extension * extension
+        return fused(tension, extension, damper_tension(damping[s], rate))
+    return tension * extension
 
 
 @formula
@@ -227,8 +227,8 @@ def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_
     """
     Add forces and moments of one SpringGroup; t: [s] since the anchors were as given.
 
-    With r = L u the force on Q is (-k / L (L - L_n) - b (v . r) / L^2) r: most of this does not
-    have to wait for the root and the division.
+    With r = L u the force on Q is (-k (L - L_n) L - b v . r) / L^2 r: the root and the division do
+    not wait for each other, and only one product waits for both.
     """
     work = work_at(bodies, rigid)
     for s in range(group_size(connections, p)):
@@ -237,9 +237,10 @@ def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_
         length, inverse_square = length_and_inverse_square(r, epsilon[s])
         p_turn, q_turn = cross(p_arm, r), cross(q_arm, r)
         extension = spring_extension(is_kept, length, natural_length[s], y)
-        per_extension = tension_per_extension(stiffness[s], length, inverse_square)
-        factor = with_damper(several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn,
-                             q_turn, inverse_square, works, work, per_extension, extension, y, out)
+        tension = spring_tension(stiffness[s], length)
+        factor = inverse_square * with_damper(
+            several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn, q_turn,
+            inverse_square, works, work, tension, extension, y, out)
         pull(several, bodies, rigid, q.particle, q.body, s, factor, r, q_turn, out)
         pull(several, bodies, rigid, p.particle, p.body, s, -factor, r, p_turn, out)
         count_anchor_work(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn, q_turn,

@@ -37,12 +37,6 @@ def spring_tension(stiffness, extension):
 
 
 @formula
-def tension_per_extension(stiffness, length, inverse_square):
-    """Return -k / L, for r instead of u [N/m^2]; inverse_square: 1 / L^2, known before L is."""
-    return (-stiffness * inverse_square) * length
-
-
-@formula
 def spring_force(stiffness, length, natural_length, u):
     """Return -k (L - L_n) u; k [N/m], lengths [m], u: (3,) to Q from P."""
     return scale(spring_tension(stiffness, length - natural_length), u)
