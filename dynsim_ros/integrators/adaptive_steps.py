@@ -101,8 +101,9 @@ class AdaptiveSteps(Walk):
         is_explicit = method.tableaux.stiff is None and method.tableaux.radau is None
         # The first and the last arguments of advance, which stay as they are.
         self._arguments = (
-            (with_structure(model) if is_explicit else model, drive, method.tableaux, method.power,
-             method.share * tolerance, spring_rates(model)[0] / EXPLICIT_REACH),
+            (with_structure(model, method.keeps_reaches) if is_explicit else model, drive,
+             method.tableaux, method.power, method.share * tolerance,
+             spring_rates(model)[0] / EXPLICIT_REACH),
             (self.clock, self.counts, self.states, new_memory(size, springs), self._dense))
         self.nowhere = Grid(FAR, 1, np.empty((1, size)), np.zeros(1, dtype=np.int64))
         self._advance = None

@@ -22,6 +22,7 @@ from ..physics.jit import part
 from ..physics.lanes import choose, lanes_at, spread
 from ..physics.motion import put_rates
 from ..physics.reach import put_reach, reach_of_state
+from ..physics.reaches import put_reaches, reaches_of_state, with_reaches
 
 # Found by trying all that fit into the lanes, on spheres, chains and webs.
 SEQUENCES = (
@@ -30,8 +31,10 @@ SEQUENCES = (
     Sequences(3e-11, (6, 8, 10, 12, 14, 16, 22), dense_substeps=FINER),
     # More of them than stages: their weights let a quarter of the rounding through.
     Sequences(0.0, (8, 10, 12, 14, 16, 18, 26), 6, dense_substeps=FINER))
-# Bodies that hang on each other pass on what is rounded: it counts sooner.
+# Bodies that hang on each other pass on what is rounded: it counts sooner, unless they are so few
+# that the reaches of their springs are kept.
 SEQUENCES_OF_SEVERAL = (*SEQUENCES[:2], SEQUENCES[2]._replace(least=2e-10), SEQUENCES[3])
+SEQUENCES_OF_FEW = (*SEQUENCES[:2], SEQUENCES[2]._replace(least=0.0, keeps_reaches=True))
 
 
 def gragg_schedule(substeps=SEQUENCES[1].substeps, stages=None):
@@ -40,16 +43,18 @@ def gragg_schedule(substeps=SEQUENCES[1].substeps, stages=None):
 
 
 @part
-def midpoint(model, drive, t, way, h, y, arm, reach, behind, here, state, f, following):
+def midpoint(model, drive, t, way, h, y, arm, reach, reaches, behind, here, state, f,
+             following):
     """
     Put behind + 2 h f(here) where `behind` was.
 
-    model: as from with_arm; behind, here: Lanes, less the state y at the start and its arm: sums
-    of small numbers are rounded less; t: [s] of the start; way: Lanes, from it to the time of
-    `here`; state: y + here, following: becomes y + behind; f: Cells to use.
+    model: as from with_arm and with_reaches; behind, here: Lanes, less the state y at the start
+    and its arm: sums of small numbers are rounded less; t: [s] of the start; way: Lanes, from it
+    to the time of `here`; state: y + here, following: becomes y + behind; f: Cells to use.
     """
     put_arm(arm, here, state)
     put_reach(reach, way, here, state)
+    put_reaches(model, drive, reaches, way, here, state)
     put_rates(model, drive, t + way, state, f, Advancing(h + h, behind, y, following))
     step_arm(arm, h, state, behind)
 
@@ -73,8 +78,9 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
     table = plan.table
     h, h_second = step / lanes_at(table, FIRST), step / lanes_at(table, SECOND)
     way = h
-    whole, arm = with_arm(model), arm_of_state(model, y)
+    whole, arm = with_arm(with_reaches(model)), arm_of_state(model, y)
     reach = reach_of_state(model, drive, t, y, arm)
+    reaches = reaches_of_state(model, drive, t, y)
     begin_arm(arm, h, y, a, b)
     for i in range(size):
         a[i] = spread(0.0)
@@ -82,7 +88,7 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
         state[i] = y[i] + b[i]
     begin_sums(size, sums, errors)
     for row in range(0, plan.rows, 2):
-        midpoint(whole, drive, t, way, h, y, arm, reach, a, b, state, f, following)
+        midpoint(whole, drive, t, way, h, y, arm, reach, reaches, a, b, state, f, following)
         way = way + h
         if plan.ends[row]:
             add_ended(table, row, size, a, sums, errors)
@@ -96,7 +102,7 @@ def gragg(model, drive, plan, size, t, step, y, rate, memory, y_new, error):
             h = choose(ended, h_second, h)
         if row == plan.rows - 1:
             break
-        midpoint(whole, drive, t, way, h, y, arm, reach, b, a, following, f, state)
+        midpoint(whole, drive, t, way, h, y, arm, reach, reaches, b, a, following, f, state)
         way = way + h
         if plan.ends[row + 1]:
             add_ended(table, row + 1, size, b, sums, errors)

@@ -6,6 +6,7 @@ import numpy as np
 
 from .closed_scene import Recogniser
 from .methods import DEFAULT_METHOD
+from .stepping import explicit_method
 from ..physics.known import Known, KnownIndex
 from ..physics.structure import with_structure
 
@@ -16,7 +17,9 @@ def kernel_kind(settings, model, drive, state):
 
     settings, model, drive: see new_steps; state: (size,) where it begins.
     """
-    kind = settings.integrator, _types(with_structure(model)), _types(drive)
+    keeps_reaches = (settings.integrator in (DEFAULT_METHOD, 'extrapolation')
+                     and explicit_method(model, settings.tolerance).keeps_reaches)
+    kind = settings.integrator, _types(with_structure(model, keeps_reaches)), _types(drive)
     if settings.integrator != DEFAULT_METHOD:
         return kind
     # Without works, for which a kernel is called already to find out what is closed.

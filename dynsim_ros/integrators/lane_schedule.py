@@ -33,8 +33,8 @@ class Sequences(NamedTuple):
     """
     The sequences that an extrapolation has where the tolerance is not below `least`.
 
-    substeps, stages: see schedule; dense_substeps: see explicit_table; share, reach: see
-    methods.Adaptive.
+    substeps, stages: see schedule; dense_substeps: see explicit_table; share, reach,
+    keeps_reaches: see methods.Adaptive.
     """
 
     least: float
@@ -43,6 +43,7 @@ class Sequences(NamedTuple):
     dense_substeps: tuple = QUICK
     share: float = 1.0
     reach: float = EXPLICIT_REACH
+    keeps_reaches: bool = False
 
 
 class Schedule(NamedTuple):

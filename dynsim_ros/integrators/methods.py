@@ -24,13 +24,15 @@ class Adaptive(NamedTuple):
 
     power: of the step in its error estimate; share: of the tolerance, for an estimate that is
     nearer to the error than those of the others are, or farther from it; reach: steps of an
-    explicit method that are longer than this over the fastest rate may be held back by stability.
+    explicit method that are longer than this over the fastest rate may be held back by stability;
+    keeps_reaches: whether it keeps the reaches of a few springs, see reaches.
     """
 
     tableaux: Tableaux
     power: float
     share: float = 1.0
     reach: float = EXPLICIT_REACH
+    keeps_reaches: bool = False
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ def _extrapolation(rule, schedule, sequences):
     plan = schedule(sequences.substeps, sequences.stages)
     tableaux = Tableaux(None, None, None, None, None, explicit_table(sequences.dense_substeps))
     return Adaptive(tableaux._replace(**{rule: plan}), 2.0 * plan.stages - 1.0, sequences.share,
-                    sequences.reach)
+                    sequences.reach, sequences.keeps_reaches)
 
 
 @lru_cache

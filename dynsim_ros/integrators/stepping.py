@@ -9,6 +9,7 @@ from .auto_steps import AutoSteps
 from .fixed_steps import FixedSteps
 from .lane_schedule import sequences_for
 from .stiffness import drag_rate, spring_rates
+from ..physics.structure import is_small
 
 # From this tolerance on the linearly implicit method needs no more steps than collocation, whose
 # steps cost several times as much; the cost of these grows with the cube of the number of springs,
@@ -26,7 +27,10 @@ def explicit_method(model, tolerance):
     """Return the Adaptive that extrapolation means for a model."""
     if needs_no_velocity(model):
         return methods.stormer_extrapolation(sequences_for(tolerance, stormer.SEQUENCES))
-    sequences = gragg.SEQUENCES if model.several is None else gragg.SEQUENCES_OF_SEVERAL
+    if model.several is None:
+        sequences = gragg.SEQUENCES
+    else:
+        sequences = gragg.SEQUENCES_OF_FEW if is_small(model) else gragg.SEQUENCES_OF_SEVERAL
     return methods.gragg_extrapolation(sequences_for(tolerance, sequences))
 
 

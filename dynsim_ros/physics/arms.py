@@ -19,7 +19,7 @@ from .jit import formula
 from .kinematics import attachment_arm
 from .lanes import choose
 from .model import Model, SpringEnds, SpringGroup
-from .state import ARM, omega_at, quaternion, quaternion_at
+from .state import ARM, omega_at, quaternion, quaternion_at, REACH
 from .vector import add, at, cross, put, scale
 
 _QUATERNION, _OMEGA = quaternion_at(1), omega_at(1, 1)
@@ -82,9 +82,15 @@ def armed(model, p, q):
     group = model.springs[0]
     group = SpringGroup(SpringEnds(p.anchor, p.particle, p.body, None),
                         SpringEnds(q.anchor, q.particle, q.body, None), group.stiffness,
-                        group.natural_length, group.epsilon, group.damping, True)
+                        group.natural_length, group.epsilon, group.damping, REACH, True)
+    return with_springs(model, (group,))
+
+
+@formula
+def with_springs(model, springs):
+    """Return a Model with other SpringGroups."""
     return Model(model.mass, model.rigid, model.several, model.round_body, model.round_inertia,
-                 model.general_body, model.inertia, model.inverse_inertia, model.weight, (group,),
+                 model.general_body, model.inertia, model.inverse_inertia, model.weight, springs,
                  model.connections, model.spring_bodies, model.air)
 
 

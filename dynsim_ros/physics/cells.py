@@ -18,7 +18,8 @@ import numpy as np
 
 from .known import KnownType
 from .lanes import ALIGNMENT, COUNT, FLOAT, LANES, VECTOR
-from .state import state_size
+from .state import REACH, REACH_SIZE, state_size
+from .structure import MOST_SPRINGS
 
 
 class CellsType(types.Type):
@@ -102,7 +103,9 @@ _reserve_numbers, _reserve_lanes = (_reservation(CellsType(dtype)) for dtype in 
 _view_numbers, _view_lanes = (_view(CellsType(dtype)) for dtype in (FLOAT, LANES))
 
 # The most that a method keeps at one place for a single body, with arm and reach, or a spring.
-SINGLE = 25
+_SINGLE = REACH + REACH_SIZE
+# The most that it keeps beside a state: the reaches of springs.
+_BESIDE = REACH_SIZE * MOST_SPRINGS
 
 
 def number_cells(several, memory, place, size):
@@ -111,16 +114,16 @@ def number_cells(several, memory, place, size):
 
     several: as in Model; place: where in the memory.
     """
-    return [0.0] * max(size, SINGLE)
+    return [0.0] * (size + _BESIDE)
 
 
 def _known_size(several):
     """Return the most that a method keeps at one place, of the type of Model.several."""
     if isinstance(several, types.NoneType):
-        return SINGLE
+        return _SINGLE
     if isinstance(several, types.BaseTuple) and isinstance(several[0], KnownType):
         bodies, rigid = several
-        return state_size(bodies.number, rigid.number)
+        return state_size(bodies.number, rigid.number) + _BESIDE
     return None
 
 
@@ -136,7 +139,7 @@ def _number_cells(several, memory, place, size):
 
 def lane_cells(several, memory, place, size):
     """Return Cells for `size` Lanes; arguments as above, each takes up four numbers of memory."""
-    return [np.zeros(COUNT) for _ in range(max(size, SINGLE))]
+    return [np.zeros(COUNT) for _ in range(size + _BESIDE)]
 
 
 @overload(lane_cells, inline='always')

@@ -19,7 +19,7 @@ from .kinematics import attachment_position, attachment_rate
 from .offset import offset_arm
 from .spring_damper import (damper_tension, length_and_direction, length_and_inverse_square,
                             spring_tension)
-from .state import (ARM, CORRECTION, EXCESS, omega_at, quaternion, quaternion_at, REACH,
+from .state import (ARM, CORRECTION, EXCESS, omega_at, quaternion, quaternion_at, VECTOR,
                     velocity_at, work_at)
 from .vector import accumulate_scaled, add, at, cross, dot, scale, subtract
 
@@ -204,26 +204,26 @@ def ends_size(anchor, particle, body):
 
 
 @formula
-def kept_reach(is_kept, r, y):
+def kept_reach(is_kept, reach_at, r, y):
     """Return the vector to Q from P: the one that the state has, or r."""
     if is_kept is not None:
-        return at(y, REACH)
+        return at(y, reach_at + VECTOR)
     return r
 
 
 @formula
-def spring_extension(is_kept, length, natural_length, y):
+def spring_extension(is_kept, reach_at, length, natural_length, y):
     """Return L - L_n [m]; where the state has what it takes, without the rounding of L."""
     extension = length - natural_length
     if is_kept is not None:
-        rounding = fused(-extension, length + natural_length, y[EXCESS])
-        extension = fused(y[CORRECTION], rounding, extension)
+        rounding = fused(-extension, length + natural_length, y[reach_at + EXCESS])
+        extension = fused(y[reach_at + CORRECTION], rounding, extension)
     return extension
 
 
 @formula
 def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_length, epsilon,
-                  damping, is_kept, anchors, moving, works, t, y, out):
+                  damping, reach_at, is_kept, anchors, moving, works, t, y, out):
     """
     Add forces and moments of one SpringGroup; t: [s] since the anchors were as given.
 
@@ -233,10 +233,10 @@ def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_
     work = work_at(bodies, rigid)
     for s in range(group_size(connections, p)):
         r, p_arm, q_arm = spring_ends(several, bodies, p, q, anchors, moving, t, s, y)
-        r = kept_reach(is_kept, r, y)
+        r = kept_reach(is_kept, reach_at, r, y)
         length, inverse_square = length_and_inverse_square(r, epsilon[s])
         p_turn, q_turn = cross(p_arm, r), cross(q_arm, r)
-        extension = spring_extension(is_kept, length, natural_length[s], y)
+        extension = spring_extension(is_kept, reach_at, length, natural_length[s], y)
         tension = spring_tension(stiffness[s], length)
         factor = inverse_square * with_damper(
             several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn, q_turn,

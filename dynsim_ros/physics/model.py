@@ -41,8 +41,9 @@ class SpringGroup(NamedTuple):
     """
     Springs with the same kinds of ends P and Q.
 
-    damping: None where they have no dampers; is_kept: True where the state has the vector to Q
-    from P (see reach), else None.
+    damping: None where they have no dampers; reach_at: where in a state the reach of a single one
+    has its place, if it has any, see reach and reaches; is_kept: True where it is there, else
+    None.
     """
 
     p: SpringEnds
@@ -51,6 +52,7 @@ class SpringGroup(NamedTuple):
     natural_length: np.ndarray
     epsilon: np.ndarray
     damping: np.ndarray | None
+    reach_at: int | None = None
     is_kept: bool | None = None
 
 

@@ -54,8 +54,8 @@ def _apply_all_springs(several, connections, bodies, rigid, springs, anchors, mo
 def apply_group(several, connections, bodies, rigid, group, anchors, moving, works, t, y, out):
     """Add forces and moments of one SpringGroup."""
     apply_springs(several, connections, bodies, rigid, group.p, group.q, group.stiffness,
-                  group.natural_length, group.epsilon, group.damping, group.is_kept, anchors,
-                  moving, works, t, y, out)
+                  group.natural_length, group.epsilon, group.damping, group.reach_at,
+                  group.is_kept, anchors, moving, works, t, y, out)
 
 
 @formula

@@ -16,7 +16,7 @@ from numba.extending import overload
 from .arms import is_none, kept_end, Types
 from .fused import fused
 from .jit import formula
-from .state import ARM, CORRECTION, EXCESS, REACH
+from .state import ARM, CORRECTION, EXCESS, REACH, VECTOR
 from .two_sum import two_sum
 from .vector import add, at, put, scale
 
@@ -66,6 +66,13 @@ def difference_of_squares(r, left, natural_length):
 
 
 @formula
+def correction_of(excess, natural_length, epsilon):
+    """Return about 1 / (L + L_n), where L is not far from L_n; of a spring."""
+    square = natural_length * natural_length
+    return natural_length / (excess + 2.0 * square + epsilon * epsilon)
+
+
+@formula
 def with_way(moving, velocity, t, r, left):
     """Return r, in two vectors, less the way of the anchor."""
     if moving is not None:
@@ -84,9 +91,7 @@ def reach_from(anchor, natural_length, epsilon, anchors, moving, t, y, arm):
     r, left = with_way(moving, velocity, t, r, left)
     natural, least = natural_length[0], epsilon[0]
     excess = difference_of_squares(r, left, natural)
-    square = natural * natural
-    return Reach(r, moving, velocity, excess,
-                 natural / (excess + 2.0 * square + least * least))
+    return Reach(r, moving, velocity, excess, correction_of(excess, natural, least))
 
 
 def reach_of_state(model, drive, t, y, arm):
@@ -127,8 +132,14 @@ def put_reach(reach, way, here, state):
     """Write to a state what is kept of its reach; here: the state less that at the start."""
     if reach is not None:
         d = less_anchor_way(reach.moving, reach.velocity, way, add(at(here, 0), at(here, ARM)))
-        r = add(reach.vector, d)
-        put(state, REACH, r)
-        x, y, z = add(reach.vector, r)
-        state[EXCESS] = fused(d[0], x, fused(d[1], y, fused(d[2], z, reach.excess)))
-        state[CORRECTION] = reach.correction
+        put_moved(reach.vector, reach.excess, reach.correction, d, REACH, state)
+
+
+@formula
+def put_moved(vector, excess, correction, d, place, state):
+    """Write a reach (3,) that has changed by d, its excess and its correction to a state."""
+    r = add(vector, d)
+    put(state, place + VECTOR, r)
+    x, y, z = add(vector, r)
+    state[place + EXCESS] = fused(d[0], x, fused(d[1], y, fused(d[2], z, excess)))
+    state[place + CORRECTION] = correction

@@ -21,9 +21,11 @@ from .rotation import quaternion_norm
 
 WORKS = ('damper', 'air', 'anchor', 'push')
 # What is kept beside the state of a single body on a single spring, see arms and reach: the arm,
-# the vector to the body from the anchor, and two numbers that its length is found by.
+# and the reach: the vector to the body from the anchor, and two numbers that its length is found
+# by.
 ARM = 6 + 7 + len(WORKS)
-REACH, EXCESS, CORRECTION = ARM + 3, ARM + 6, ARM + 7
+REACH = ARM + 3
+VECTOR, EXCESS, CORRECTION, REACH_SIZE = 0, 3, 4, 5
 
 
 @formula

@@ -11,19 +11,31 @@ import numpy as np
 
 from .known import Known, KnownIndex
 from .offset import AxisOffset
+from .state import REACH_SIZE, state_size
 
 # Above these, kernels would be long, and nothing would be in registers anyway.
 MOST_BODIES, MOST_SPRINGS = 4, 6
 
 
-def with_structure(model):
-    """Return a Model with its structure in its type, each spring its own group, if it is small."""
-    bodies, springs = len(model.mass), model.connections or 1
-    if bodies > MOST_BODIES or springs > MOST_SPRINGS or bodies == springs == 1:
+def is_small(model):
+    """Return whether a Model is small enough for kernels of its own."""
+    return len(model.mass) <= MOST_BODIES and (model.connections or 1) <= MOST_SPRINGS
+
+
+def with_structure(model, keeps_reaches=False):
+    """
+    Return a Model with its structure in its type, each spring its own group, if it is small.
+
+    keeps_reaches: whether the reaches of springs between several bodies have places, see reaches.
+    """
+    if not is_small(model) or len(model.mass) == (model.connections or 1) == 1:
         return model
     if model.springs is not None:
+        singles = [(group, s) for group in model.springs for s in range(len(group.stiffness))]
+        has_place = keeps_reaches and model.several is not None
         model = model._replace(springs=tuple(
-            _spring_of(group, s) for group in model.springs for s in range(len(group.stiffness))))
+            _spring_of(group, s, _reach_at(model, i) if has_place else None)
+            for i, (group, s) in enumerate(singles)))
     if model.several is None:
         return model
     return model._replace(several=tuple(map(Known, model.several)),
@@ -31,12 +43,16 @@ def with_structure(model):
                           general_body=_known(model.general_body))
 
 
-def _spring_of(group, s):
+def _reach_at(model, spring):
+    return Known(state_size(len(model.mass), model.rigid) + REACH_SIZE * spring)
+
+
+def _spring_of(group, s, reach_at):
     one = slice(s, s + 1)
     return group._replace(
         p=_end_of(group.p, one), q=_end_of(group.q, one), stiffness=group.stiffness[one],
         natural_length=group.natural_length[one], epsilon=group.epsilon[one],
-        damping=None if group.damping is None else group.damping[one])
+        damping=None if group.damping is None else group.damping[one], reach_at=reach_at)
 
 
 def _end_of(ends, one):

@@ -89,7 +89,7 @@ def without(scene, *terms):
 
 # Products, sums, differences and signs of the formulas on the sheet; each force is added up.
 FORMULAS = {'linear drag': 3 + 3 + 3, 'rotational drag': 3 + 3 + 3,
-            'damper': (3 + 2) + (3 + 2) + 1 + 1 + 1 + 2}
+            'damper': (3 + 2) + (3 + 2) + 1 + 1 + 2}
 
 
 def test_operations_without_any_term():

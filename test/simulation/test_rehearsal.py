@@ -90,6 +90,13 @@ def test_another_axis_needs_other_kernels_where_the_structure_is_known(offset, s
     assert (simulator.kernel_kind(values) == simulator.kernel_kind({})) is same
 
 
+@pytest.mark.parametrize('tolerance, same', [(1e-6, True), (2e-8, True), (1e-9, False)])
+def test_small_tolerances_need_other_kernels_where_bodies_hang_on_each_other(tolerance, same):
+    """They keep the reaches of springs."""
+    simulator = Simulator(load_scene('double_pendulum_of_spheres'), tolerance=1e-5)
+    assert (simulator.kernel_kind({'tolerance': tolerance}) == simulator.kernel_kind({})) is same
+
+
 def test_a_run_does_not_wait_for_another_thread_that_compiles():
     simulator = Simulator(SCENE, integrator='rk4')
     simulator.prepare()
