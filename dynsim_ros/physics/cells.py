@@ -18,7 +18,7 @@ import numpy as np
 
 from .known import KnownType
 from .lanes import ALIGNMENT, COUNT, FLOAT, LANES, VECTOR
-from .state import REACH, REACH_SIZE, state_size
+from .state import REACH, REACH_SIZE, state_size, WORKS
 from .structure import MOST_SPRINGS
 
 
@@ -114,7 +114,7 @@ def number_cells(several, memory, place, size):
 
     several: as in Model; place: where in the memory.
     """
-    return [0.0] * (size + _BESIDE)
+    return [0.0] * (size + len(WORKS) + _BESIDE)
 
 
 def _known_size(several):
@@ -139,7 +139,7 @@ def _number_cells(several, memory, place, size):
 
 def lane_cells(several, memory, place, size):
     """Return Cells for `size` Lanes; arguments as above, each takes up four numbers of memory."""
-    return [np.zeros(COUNT) for _ in range(size + _BESIDE)]
+    return [np.zeros(COUNT) for _ in range(size + len(WORKS) + _BESIDE)]
 
 
 @overload(lane_cells, inline='always')
