@@ -13,7 +13,7 @@ from typing import NamedTuple
 from numba.extending import overload
 
 from .arms import is_none, Types, with_springs
-from .forces import arm_of, body_of
+from .forces import arm_of
 from .jit import formula, INLINED
 from .model import SpringGroup
 from .reach import add_in_two, correction_of, difference_of_squares, put_moved, with_way
@@ -36,31 +36,30 @@ class SpringReach(NamedTuple):
 
 
 @formula
-def with_end(several, bodies, sign, anchor, particle, body, offset, s, anchors, moving, t, y, r,
-             left):
-    """Return r and left with the place of an end of spring s, times 1 or -1, and its arm."""
+def with_end(bodies, sign, anchor, particle, body, offset, anchors, moving, t, y, r, left):
+    """Return r and left with the place of the end of a spring, times 1 or -1, and its arm."""
     arm = (0.0, 0.0, 0.0)
     if anchor is not None:
-        r, left = add_in_two(r, left, scale(sign, at(anchors[anchor[s]], 0)))
-        r, left = with_way(moving, scale(-sign, at(anchors[anchor[s]], 3)), t, r, left)
+        r, left = add_in_two(r, left, scale(sign, at(anchors[anchor[0]], 0)))
+        r, left = with_way(moving, scale(-sign, at(anchors[anchor[0]], 3)), t, r, left)
     if particle is not None:
-        r, left = add_in_two(r, left, scale(sign, at(y, 3 * body_of(several, particle, s))))
+        r, left = add_in_two(r, left, scale(sign, at(y, 3 * particle[0])))
     if body is not None:
-        arm = arm_of(bodies, body_of(several, body, s), offset, s, y)
-        r, left = add_in_two(r, left, scale(sign, at(y, 3 * body_of(several, body, s))))
+        arm = arm_of(bodies, body[0], offset, 0, y)
+        r, left = add_in_two(r, left, scale(sign, at(y, 3 * body[0])))
         r, left = add_in_two(r, left, scale(sign, arm))
     return r, left, arm
 
 
 @formula
-def spring_reach(several, bodies, group, anchors, moving, t, y):
+def spring_reach(bodies, group, anchors, moving, t, y):
     """Return the SpringReach of a group of one spring in a state of numbers or Lanes."""
     p, q, zero = group.p, group.q, (0.0, 0.0, 0.0)
     r, left = zero, zero
-    r, left, q_arm = with_end(several, bodies, 1.0, q.anchor, q.particle, q.body, q.offset, 0,
-                              anchors, moving, t, y, r, left)
-    r, left, p_arm = with_end(several, bodies, -1.0, p.anchor, p.particle, p.body, p.offset, 0,
-                              anchors, moving, t, y, r, left)
+    r, left, q_arm = with_end(bodies, 1.0, q.anchor, q.particle, q.body, q.offset, anchors, moving,
+                              t, y, r, left)
+    r, left, p_arm = with_end(bodies, -1.0, p.anchor, p.particle, p.body, p.offset, anchors,
+                              moving, t, y, r, left)
     # What is left is of the places of the ends, not of what is between them.
     r, left = add_in_two(r, zero, left)
     natural = group.natural_length[0]
@@ -77,27 +76,26 @@ def anchor_moves(moving, velocity, way):
 
 
 @formula
-def end_way(several, bodies, anchor, particle, body, offset, s, arm, anchors, moving, way, here,
-            state):
+def end_way(bodies, anchor, particle, body, offset, arm, anchors, moving, way, here, state):
     """Return how far an end has come since the start of the step; arm: its arm then."""
     if anchor is not None:
-        return anchor_moves(moving, at(anchors[anchor[s]], 3), way)
+        return anchor_moves(moving, at(anchors[anchor[0]], 3), way)
     if particle is not None:
-        return at(here, 3 * body_of(several, particle, s))
+        return at(here, 3 * particle[0])
     if body is not None:
-        i = body_of(several, body, s)
-        return add(at(here, 3 * i), subtract(arm_of(bodies, i, offset, s, state), arm))
+        turned = subtract(arm_of(bodies, body[0], offset, 0, state), arm)
+        return add(at(here, 3 * body[0]), turned)
     return (0.0, 0.0, 0.0)
 
 
 @formula
-def put_spring_reach(several, bodies, group, reach, anchors, moving, way, here, state):
+def put_spring_reach(bodies, group, reach, anchors, moving, way, here, state):
     """Write to a state what is kept of the reach of a group of one spring; as put_reach."""
     p, q = group.p, group.q
-    q_way = end_way(several, bodies, q.anchor, q.particle, q.body, q.offset, 0, reach.q_arm,
-                    anchors, moving, way, here, state)
-    p_way = end_way(several, bodies, p.anchor, p.particle, p.body, p.offset, 0, reach.p_arm,
-                    anchors, moving, way, here, state)
+    q_way = end_way(bodies, q.anchor, q.particle, q.body, q.offset, reach.q_arm, anchors, moving,
+                    way, here, state)
+    p_way = end_way(bodies, p.anchor, p.particle, p.body, p.offset, reach.p_arm, anchors, moving,
+                    way, here, state)
     put_moved(reach.vector, reach.excess, reach.correction, subtract(q_way, p_way),
               group.reach_at, state)
 
@@ -123,38 +121,36 @@ def _kept_groups(springs):
     return lambda springs: (kept(springs[0]),) + kept_groups(springs[1:])
 
 
-def spring_reaches(several, bodies, springs, anchors, moving, t, y):
+def spring_reaches(bodies, springs, anchors, moving, t, y):
     """Return the SpringReach of each of some SpringGroups."""
-    return tuple(spring_reach(several, bodies, group, anchors, moving, t, y) for group in springs)
+    return tuple(spring_reach(bodies, group, anchors, moving, t, y) for group in springs)
 
 
 @overload(spring_reaches, jit_options=INLINED)
-def _spring_reaches(several, bodies, springs, anchors, moving, t, y):
+def _spring_reaches(bodies, springs, anchors, moving, t, y):
     if not len(springs):
-        return lambda several, bodies, springs, anchors, moving, t, y: ()
+        return lambda bodies, springs, anchors, moving, t, y: ()
 
-    def first_and_others(several, bodies, springs, anchors, moving, t, y):
-        return ((spring_reach(several, bodies, springs[0], anchors, moving, t, y),)
-                + spring_reaches(several, bodies, springs[1:], anchors, moving, t, y))
+    def first_and_others(bodies, springs, anchors, moving, t, y):
+        return ((spring_reach(bodies, springs[0], anchors, moving, t, y),)
+                + spring_reaches(bodies, springs[1:], anchors, moving, t, y))
     return first_and_others
 
 
-def put_spring_reaches(several, bodies, springs, reaches, anchors, moving, way, here, state):
+def put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, state):
     """Write what is kept of the reaches of some SpringGroups."""
     for group, reach in zip(springs, reaches):
-        put_spring_reach(several, bodies, group, reach, anchors, moving, way, here, state)
+        put_spring_reach(bodies, group, reach, anchors, moving, way, here, state)
 
 
 @overload(put_spring_reaches, jit_options=INLINED)
-def _put_spring_reaches(several, bodies, springs, reaches, anchors, moving, way, here, state):
-    def nothing(several, bodies, springs, reaches, anchors, moving, way, here, state):
+def _put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, state):
+    def nothing(bodies, springs, reaches, anchors, moving, way, here, state):
         pass
 
-    def first_and_others(several, bodies, springs, reaches, anchors, moving, way, here, state):
-        put_spring_reach(several, bodies, springs[0], reaches[0], anchors, moving, way, here,
-                         state)
-        put_spring_reaches(several, bodies, springs[1:], reaches[1:], anchors, moving, way, here,
-                           state)
+    def first_and_others(bodies, springs, reaches, anchors, moving, way, here, state):
+        put_spring_reach(bodies, springs[0], reaches[0], anchors, moving, way, here, state)
+        put_spring_reaches(bodies, springs[1:], reaches[1:], anchors, moving, way, here, state)
     return first_and_others if len(springs) else nothing
 
 
@@ -183,7 +179,7 @@ def _with_reaches(model):
 def reaches_of_all(model, drive, t, y):
     """Return the reaches in a state of a model that keeps them."""
     bodies, _ = counts(model)
-    return spring_reaches(model.several, bodies, model.springs, drive.anchors, drive.moving, t, y)
+    return spring_reaches(bodies, model.springs, drive.anchors, drive.moving, t, y)
 
 
 def reaches_of_state(model, drive, t, y):
@@ -203,5 +199,5 @@ def put_reaches(model, drive, reaches, way, here, state):
     """Write to a state what is kept of its reaches; here: the state less that at the start."""
     if reaches is not None:
         bodies, _ = counts(model)
-        put_spring_reaches(model.several, bodies, model.springs, reaches, drive.anchors,
-                           drive.moving, way, here, state)
+        put_spring_reaches(bodies, model.springs, reaches, drive.anchors, drive.moving, way, here,
+                           state)
