@@ -33,7 +33,6 @@ from ..physics.jit import formula, part
 from ..physics.lanes import choose, COUNT, lane, lanes_at, put_lanes, spread, total
 from ..physics.motion import rates
 from ..physics.reach import reach_of_state
-from ..physics.reaches import reaches_of_state, with_reaches
 from ..physics.state import omega_at, quaternion_at
 
 # Coefficients of even powers of s come from sums of what is known at s and -s, those of odd powers
@@ -157,7 +156,12 @@ def radau_table():
 
 @part
 def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory, reached):
-    """Write the states at the instants between, one in each lane, to `reached`."""
+    """
+    Write the states at the instants between, one in each lane, to `reached`.
+
+    Without the reaches of several springs, which take long to be compiled: the errors of these
+    states are not passed on.
+    """
     a = lane_row(model.several, memory, 0, size)
     b = lane_row(model.several, memory, 1, size)
     f = lane_row(model.several, memory, 2, size)
@@ -169,9 +173,8 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
     for i in range(size):
         base[i] = choose(from_start, y[i], y_new[i])
         reached[i] = base[i]
-    whole, arm = with_arm(with_reaches(model)), arm_of_state(model, base)
+    whole, arm = with_arm(model), arm_of_state(model, base)
     reach = reach_of_state(model, drive, start, base, arm)
-    reaches = reaches_of_state(model, drive, start, base)
     for stage in range(int(table[_STAGES])):
         h, pairs = way / table[_SUBSTEPS + stage], int(table[_SUBSTEPS + stage]) // 2
         for i in range(size):
@@ -181,12 +184,12 @@ def fan_out(model, drive, table, size, t, step, y, rate, y_new, rate_new, memory
         begin_arm(arm, h, base, a, b)
         passed = h
         for pair in range(pairs):
-            midpoint(whole, drive, start, passed, h, base, arm, reach, reaches, a, b, state, f,
+            midpoint(whole, drive, start, passed, h, base, arm, reach, None, a, b, state, f,
                      following)
             passed = passed + h
             if pair == pairs - 1:
                 break
-            midpoint(whole, drive, start, passed, h, base, arm, reach, reaches, b, a, following, f,
+            midpoint(whole, drive, start, passed, h, base, arm, reach, None, b, a, following, f,
                      state)
             passed = passed + h
         weight = table[_SEQUENCES + stage]
