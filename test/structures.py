@@ -1,9 +1,10 @@
 # Copyright 2026 the dynsim_ros authors
 # SPDX-License-Identifier: Apache-2.0
-"""Small scenes with all kinds of bodies, ends of springs and offsets."""
+"""Small scenes with all kinds of bodies, ends of springs and offsets; one that is too large."""
 
 from dataclasses import replace
 
+from dynsim_ros.physics.structure import MOST_BODIES
 from dynsim_ros.scene import parse_scene
 
 SEVERAL = parse_scene("""
@@ -30,3 +31,5 @@ SINGLE = replace(SEVERAL, bodies=[body for body in SEVERAL.bodies if body.name =
                  springs=[replace(spring, name=name, from_=anchor, to='die')
                           for spring in SEVERAL.springs if spring.name == 'held'
                           for name, anchor in (('held', 'wall'), ('led', 'hand'))])
+MANY = replace(SEVERAL, springs=(), bodies=[replace(SEVERAL.bodies[0], name=f'dot{i}')
+                                            for i in range(MOST_BODIES + 1)])

@@ -172,15 +172,15 @@ def count_damper_work(works, work, damping, rate, inverse_square, out):
 
 @formula
 def with_damper(several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn, q_turn,
-                inverse_square, works, work, tension, extension, y, out):
+                inverse_square, works, work, per_extension, extension, y, out):
     """Return L times the tension of a spring and its damper; count the damper's work."""
     if damping is not None:
         p_rate, q_rate = end_rates(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn,
                                    q_turn, y)
         rate = q_rate - p_rate
         count_damper_work(works, work, damping[s], rate, inverse_square, out)
-        return fused(tension, extension, damper_tension(damping[s], rate))
-    return tension * extension
+        return fused(per_extension, extension, damper_tension(damping[s], rate))
+    return per_extension * extension
 
 
 @formula
@@ -237,10 +237,11 @@ def apply_springs(several, connections, bodies, rigid, p, q, stiffness, natural_
         length, inverse_square = length_and_inverse_square(r, epsilon[s])
         p_turn, q_turn = cross(p_arm, r), cross(q_arm, r)
         extension = spring_extension(is_kept, reach_at, length, natural_length[s], y)
-        tension = spring_tension(stiffness[s], length)
+        # Of L times the tension: this product does not wait for the difference.
+        per_extension = spring_tension(stiffness[s], length)
         factor = inverse_square * with_damper(
             several, bodies, rigid, p, q, damping, s, anchors, moving, r, p_turn, q_turn,
-            inverse_square, works, work, tension, extension, y, out)
+            inverse_square, works, work, per_extension, extension, y, out)
         pull(several, bodies, rigid, q.particle, q.body, s, factor, r, q_turn, out)
         pull(several, bodies, rigid, p.particle, p.body, s, -factor, r, p_turn, out)
         count_anchor_work(several, bodies, rigid, p, q, s, anchors, moving, r, p_turn, q_turn,

@@ -11,14 +11,14 @@ from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.motion import rates
 from dynsim_ros.physics.reaches import put_reaches, reaches_of_state, with_reaches
 from dynsim_ros.physics.state import EXCESS, REACH_SIZE
-from dynsim_ros.physics.structure import MOST_BODIES, with_structure
+from dynsim_ros.physics.structure import with_structure
 from dynsim_ros.scene import load_scene
 from dynsim_ros.simulation.layout import Layout
 import numba
 import numpy as np
 import pytest
 from random_states import random_state
-from structures import SEVERAL, SINGLE
+from structures import MANY, SEVERAL, SINGLE
 
 TIME, WAY = 7.3, 0.02
 # With each kind of end once, so that it is soon compiled.
@@ -89,14 +89,8 @@ def test_rates_with_reaches_are_those_without(call):
     assert not np.array_equal(found, exact)
 
 
-def many_bodies():
-    dot = SEVERAL.bodies[0]
-    return replace(SEVERAL, springs=(), bodies=[
-        replace(dot, name=f'dot{i}') for i in range(MOST_BODIES + 1)])
-
-
 @pytest.mark.parametrize('scene', [
-    load_scene('sphere_on_spring'), SINGLE, many_bodies(), replace(SEVERAL, springs=())],
+    load_scene('sphere_on_spring'), SINGLE, MANY, replace(SEVERAL, springs=())],
     ids=['sphere', 'several springs', 'many bodies', 'no spring'])
 def test_elsewhere_there_are_none(scene):
     model = with_structure(build_model(scene), True)

@@ -9,14 +9,14 @@ from dynsim_ros.physics.known import Known, KnownIndex
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.physics.motion import rates
 from dynsim_ros.physics.offset import AxisOffset
-from dynsim_ros.physics.structure import MOST_BODIES, with_structure
+from dynsim_ros.physics.structure import with_structure
 from dynsim_ros.simulation.layout import Layout
 from newton_euler import NewtonEuler
 import numba
 import numpy as np
 import pytest
 from random_states import difference, random_state
-from structures import SEVERAL, SINGLE
+from structures import MANY, SEVERAL, SINGLE
 
 TIME = 0.37
 
@@ -66,9 +66,7 @@ def test_each_spring_is_a_group_and_offsets_on_an_axis_are_told():
 def test_one_body_on_one_spring_and_large_scenes_stay_as_they_are():
     one = build_model(replace(SINGLE, springs=SINGLE.springs[:1]))
     assert with_structure(one) is one
-    dot = SEVERAL.bodies[0]
-    many = build_model(replace(SEVERAL, springs=(), bodies=[
-        replace(dot, name=f'dot{i}') for i in range(MOST_BODIES + 1)]))
+    many = build_model(MANY)
     assert with_structure(many) is many
 
 
