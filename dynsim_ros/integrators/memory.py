@@ -9,11 +9,10 @@ then what a collocation method keeps of its stages, and a matrix of springs time
 same, with its pivots.
 """
 
-from numba.extending import overload
 import numpy as np
 
 from ..physics.cells import lane_cells, number_cells
-from ..physics.jit import formula
+from ..physics.jit import formula, overload
 from ..physics.lanes import COUNT
 
 LANE_ROWS = 8

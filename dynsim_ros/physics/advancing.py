@@ -12,12 +12,11 @@ import operator
 from typing import NamedTuple
 
 from numba import types
-from numba.extending import overload
 
 from .cells import CellsType
 from .equations_of_motion import linear_acceleration, scalar_angular_acceleration
 from .fused import fused
-from .jit import formula
+from .jit import formula, overload
 from .vector import put
 
 

@@ -12,10 +12,9 @@ States with an arm are Cells; it lies behind the state of a single body, works i
 """
 
 from numba import types
-from numba.extending import overload
 
 from .fused import fused
-from .jit import formula
+from .jit import formula, overload
 from .kinematics import attachment_arm
 from .lanes import choose
 from .model import Model, SpringEnds, SpringGroup

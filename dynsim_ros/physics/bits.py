@@ -5,8 +5,9 @@
 import struct
 
 from numba import types
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic
 
+from .jit import overload
 from .lanes import FLOAT
 
 # Of the exponent; bits of what follows it.

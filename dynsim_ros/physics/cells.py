@@ -13,9 +13,10 @@ from llvmlite import ir
 from numba import types
 from numba.core.typing.builtins import infer_global
 from numba.core.typing.templates import AbstractTemplate, signature
-from numba.extending import intrinsic, lower_builtin, models, overload, register_model
+from numba.extending import intrinsic, lower_builtin, models, register_model
 import numpy as np
 
+from .jit import overload
 from .known import KnownType
 from .lanes import ALIGNMENT, COUNT, FLOAT, LANES, VECTOR
 from .state import REACH, REACH_SIZE, state_size, WORKS

@@ -13,9 +13,10 @@ import math
 
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic
 import numpy as np
 
+from .jit import overload
 from .lanes import as_vector, COUNT, FLOAT, LANES, VECTOR
 
 

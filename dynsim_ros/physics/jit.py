@@ -18,8 +18,11 @@ import threading
 from types import FunctionType
 
 import numba
+from numba import extending
 from numba.core import event
 from numba.core.registry import CPUDispatcher
+
+from .linked import LinkedCompiler
 
 # The caches of older sources that are kept, for other installations of the package.
 _CACHES_KEPT = 4
@@ -120,8 +123,8 @@ def only_loading():
 # Without reference counting (_nrt): the kernels allocate nothing, and counting the arrays of
 # a model at every step took three quarters of the time of a step.
 _OPTIONS = {'error_model': 'numpy', 'nogil': True, 'fastmath': False, '_nrt': False}
-# For an overload that is large: to be inlined wherever it is used.
-INLINED = {**_OPTIONS, 'forceinline': True}
+_LINKED = {'forceinline': True, 'no_cpython_wrapper': True, 'no_cfunc_wrapper': True,
+           'pipeline_class': LinkedCompiler}
 
 
 def _compiled(function, **more):
@@ -160,11 +163,15 @@ def formula(function):
 
     Without what only calls from Python need, which halves the time that it takes to compile.
     """
-    compiled = _compiled(function, forceinline=True, no_cpython_wrapper=True,
-                         no_cfunc_wrapper=True)
+    compiled = _compiled(function, **_LINKED)
     if not numba.config.DISABLE_JIT:
         compiled.__class__ = _Formula
     return compiled
+
+
+def overload(function, **options):
+    """Decorate what returns formulas to be compiled in place of a function, by their types."""
+    return extending.overload(function, jit_options={**_OPTIONS, **_LINKED}, **options)
 
 
 def plain(function, **instead):

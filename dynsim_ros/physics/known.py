@@ -15,8 +15,10 @@ from numba.core.imputils import lower_cast, lower_constant
 from numba.core.typeconv import Conversion
 from numba.core.typing.builtins import infer_global
 from numba.core.typing.templates import AbstractTemplate, signature
-from numba.extending import (lower_builtin, models, NativeValue, overload, register_model,
-                             typeof_impl, unbox)
+from numba.extending import (lower_builtin, models, NativeValue, register_model, typeof_impl,
+                             unbox)
+
+from .jit import overload
 
 
 class Known(int):

@@ -18,8 +18,10 @@ from numba.core.imputils import lower_cast
 from numba.core.typeconv import Conversion
 from numba.core.typing.builtins import infer_global
 from numba.core.typing.templates import ConcreteTemplate, signature
-from numba.extending import intrinsic, lower_builtin, models, overload, register_model
+from numba.extending import intrinsic, lower_builtin, models, register_model
 import numpy as np
+
+from .jit import overload
 
 COUNT = 4
 

@@ -7,13 +7,12 @@ States are arrays or Cells, of numbers or of Lanes. Absent terms (None) are not 
 """
 
 from numba import types
-from numba.extending import overload
 
 from .advancing import put_angular_acceleration, put_linear_acceleration
 from .equations_of_motion import angular_acceleration
 from .forces import (apply_springs, begin_works, put_powers, with_linear_drag, with_push,
                      with_rotational_drag, with_weight)
-from .jit import formula, INLINED
+from .jit import formula, overload
 from .rotation import quaternion_rate_world, rotation_matrix
 from .state import (counts, omega_at, put_quaternion, quaternion, quaternion_at, velocity_at,
                     work_at)
@@ -33,7 +32,7 @@ def apply_all_springs(several, connections, bodies, rigid, springs, anchors, mov
         apply_group(several, connections, bodies, rigid, group, anchors, moving, works, t, y, out)
 
 
-@overload(apply_all_springs, jit_options=INLINED)
+@overload(apply_all_springs)
 def _apply_all_springs(several, connections, bodies, rigid, springs, anchors, moving, works, t, y,
                        out):
     def nothing(several, connections, bodies, rigid, springs, anchors, moving, works, t, y, out):

@@ -5,11 +5,10 @@
 from typing import NamedTuple
 
 from numba import types
-from numba.extending import overload
 import numpy as np
 
 from .fused import fused
-from .jit import formula
+from .jit import formula, overload
 from .kinematics import attachment_arm
 from .known import Known
 from .vector import at

@@ -11,11 +11,10 @@ extension L - L_n. It is kept where arms are, to whose ends it goes: see there.
 
 from typing import NamedTuple
 
-from numba.extending import overload
 
 from .arms import is_none, kept_end, Types
 from .fused import fused
-from .jit import formula
+from .jit import formula, overload
 from .state import ARM, CORRECTION, EXCESS, REACH, VECTOR
 from .two_sum import two_sum
 from .vector import add, at, put, scale

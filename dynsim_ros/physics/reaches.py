@@ -10,11 +10,10 @@ has a place behind the state: see structure.
 
 from typing import NamedTuple
 
-from numba.extending import overload
 
 from .arms import is_none, Types, with_springs
 from .forces import arm_of
-from .jit import formula, INLINED
+from .jit import formula, overload
 from .model import SpringGroup
 from .reach import add_in_two, correction_of, difference_of_squares, put_moved, with_way
 from .state import counts
@@ -114,7 +113,7 @@ def kept_groups(springs):
     return tuple(map(kept, springs))
 
 
-@overload(kept_groups, jit_options=INLINED)
+@overload(kept_groups)
 def _kept_groups(springs):
     if not len(springs):
         return lambda springs: ()
@@ -126,7 +125,7 @@ def spring_reaches(bodies, springs, anchors, moving, t, y):
     return tuple(spring_reach(bodies, group, anchors, moving, t, y) for group in springs)
 
 
-@overload(spring_reaches, jit_options=INLINED)
+@overload(spring_reaches)
 def _spring_reaches(bodies, springs, anchors, moving, t, y):
     if not len(springs):
         return lambda bodies, springs, anchors, moving, t, y: ()
@@ -143,7 +142,7 @@ def put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, sta
         put_spring_reach(bodies, group, reach, anchors, moving, way, here, state)
 
 
-@overload(put_spring_reaches, jit_options=INLINED)
+@overload(put_spring_reaches)
 def _put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, state):
     def nothing(bodies, springs, reaches, anchors, moving, way, here, state):
         pass

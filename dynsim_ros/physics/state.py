@@ -11,10 +11,9 @@ A particle has no place among quaternions and angular velocities.
 import math
 
 from numba import types
-from numba.extending import overload
 import numpy as np
 
-from .jit import formula
+from .jit import formula, overload
 from .known import Known, KnownType
 from .model import body_order
 from .rotation import quaternion_norm

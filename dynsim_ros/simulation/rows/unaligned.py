@@ -5,7 +5,9 @@
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic
+
+from ...physics.jit import overload
 
 
 def put_number(data, i, number):

@@ -1,0 +1,50 @@
+# Copyright 2026 the dynsim_ros authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Functions that are only linked into others: no machine code of their own is made.
+
+For numba every compiled function is one that could be called, and is translated to the end; what
+is inlined wherever it is used needs that as little as passes over the functions that it calls.
+"""
+
+from llvmlite import ir
+from llvmlite.binding import parse_assembly
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+
+# How the names of numba's environments begin: one of each function, a global variable.
+_ENVIRONMENT = '_ZN08NumbaEnv'
+
+
+class _LinkedLibrary(JITCodeLibrary):
+    """Keeps the code of a function for those that use it, and translates none."""
+
+    def _optimize_functions(self, ll_module):
+        # They are later, when what they use is in them.
+        ll_module.data_layout = self._codegen._data_layout
+
+    def _finalize_final_module(self):
+        self._finalize_dynamic_globals()
+        self._finalized = True
+        names = [variable.name for variable in self._final_module.global_variables
+                 if variable.name.startswith(_ENVIRONMENT)]
+        self._get_module_for_linking()
+        rest = self._codegen._create_empty_module(self.name)
+        for name in names:
+            environment = ir.GlobalVariable(rest, ir.IntType(8).as_pointer(), name)
+            environment.linkage = 'common'
+            environment.initializer = environment.type.pointee(None)
+        self._final_module = parse_assembly(str(rest))
+        super()._finalize_final_module()
+
+
+class LinkedCompiler(Compiler):
+    """numba's compiler, for functions that are only linked into others."""
+
+    def compile_extra(self, function):
+        """Compile a function, see numba.core.compiler.CompilerBase."""
+        if self.state.library is None:
+            self.state.library = _LinkedLibrary(self.state.targetctx.codegen(),
+                                                function.__qualname__)
+            self.state.library.enable_object_caching()
+        return super().compile_extra(function)
