@@ -5,6 +5,7 @@
 import numba
 
 from ..physics.lighter_compiling import lighter_compiling
+from ..physics.written_out import loops_written_out
 
 
 def entry(kernel, *arguments):
@@ -18,6 +19,6 @@ def entry(kernel, *arguments):
     signature = tuple(numba.typeof(argument) for argument in arguments)
     # Asked first: compile() waits until no other thread compiles anything.
     if signature not in kernel.overloads:
-        with lighter_compiling():
+        with lighter_compiling(), loops_written_out():
             kernel.compile(signature)
     return kernel.overloads[signature].entry_point
