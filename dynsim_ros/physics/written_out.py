@@ -18,7 +18,11 @@ _OURS, _USUAL = 1000, 300
 
 @contextmanager
 def loops_written_out():
-    """Let LLVM write larger loops out meanwhile; for all of the process: no others compile."""
+    """
+    Let LLVM write larger loops out meanwhile.
+
+    The bound is one of the whole process: for use under numba's lock, see lighter_compiling.
+    """
     _set_threshold(_OURS)
     try:
         yield
