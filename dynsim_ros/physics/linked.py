@@ -7,7 +7,6 @@ numba translates every function that it compiles, also one that is inlined where
 the time that a scene's kernels take to be compiled that was a sixth to a quarter.
 """
 
-from llvmlite import ir
 from llvmlite.binding import parse_assembly
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
@@ -18,6 +17,10 @@ _ENVIRONMENT = '_ZN08NumbaEnv'
 
 class _LinkedLibrary(JITCodeLibrary):
     """Keeps the code of a function for those that use it, and translates none."""
+
+    def __init__(self, context, name):
+        super().__init__(context.codegen(), name)
+        self._context = context
 
     def _optimize_functions(self, ll_module):
         # They are later, when what they use is in them.
@@ -31,9 +34,7 @@ class _LinkedLibrary(JITCodeLibrary):
         self._get_module_for_linking()
         rest = self._codegen._create_empty_module(self.name)
         for name in names:
-            environment = ir.GlobalVariable(rest, ir.IntType(8).as_pointer(), name)
-            environment.linkage = 'common'
-            environment.initializer = environment.type.pointee(None)
+            self._context.declare_env_global(rest, name)
         self._final_module = parse_assembly(str(rest))
         super()._finalize_final_module()
 
@@ -43,8 +44,6 @@ class LinkedCompiler(Compiler):
 
     def compile_extra(self, function):
         """Compile a function, see numba.core.compiler.CompilerBase."""
-        if self.state.library is None:
-            self.state.library = _LinkedLibrary(self.state.targetctx.codegen(),
-                                                function.__qualname__)
-            self.state.library.enable_object_caching()
+        self.state.library = _LinkedLibrary(self.state.targetctx, function.__qualname__)
+        self.state.library.enable_object_caching()
         return super().compile_extra(function)

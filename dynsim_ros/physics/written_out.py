@@ -5,7 +5,7 @@ Loops over the numbers of a state, written out where LLVM would leave a loop.
 
 What a loop goes through has to lie in memory, and is loaded and stored at each substep. Without
 loops the compiler knows every number by name, and keeps in registers what it needs next: chains
-of two and three bodies take a seventh to a fifth less time.
+of two and three bodies take a ninth to a fifth less time.
 """
 
 from contextlib import contextmanager
