@@ -9,7 +9,7 @@ import re
 from dynsim_ros.physics.jit import part
 from dynsim_ros.physics.lighter_compiling import lighter_compiling
 import numba
-from numba.core import ir
+from numba.core import event, ir
 import numpy as np
 import pytest
 
@@ -50,23 +50,29 @@ def code(compiled):
         numbers.setdefault(name.group().strip('%@"'), len(numbers))), text)
 
 
+def metadata(compiled):
+    """Return what numba has written down about a function of one signature."""
+    return compiled.get_metadata(*compiled.signatures)
+
+
 def test_the_same_code_comes_out():
     before = newly_compiled()
     with lighter_compiling():
         lighter = newly_compiled()
     assert code(lighter) == code(before)
+    assert 'timers' in metadata(before) and 'timers' not in metadata(lighter)
     assert lighter(np.arange(5.0), 4) == before(np.arange(5.0), 4)
 
 
 def test_all_is_as_before_afterwards():
     scope = ir.Scope(None, ir.Loc('here', 1))
     scope.define('x', scope.loc)
-    thresholds = gc.get_threshold()
+    thresholds, install_timer = gc.get_threshold(), event.install_timer
     with pytest.raises(KeyError), lighter_compiling():
-        assert gc.get_threshold() != thresholds
+        assert gc.get_threshold() != thresholds and event.install_timer is not install_timer
         assert deepcopy(scope).get('x') is scope.get('x')
         raise KeyError
-    assert gc.get_threshold() == thresholds
+    assert gc.get_threshold() == thresholds and event.install_timer is install_timer
     assert deepcopy(scope).get('x') is not scope.get('x')
 
 
