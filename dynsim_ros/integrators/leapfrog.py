@@ -82,12 +82,12 @@ def drift(model, bodies, rigid, implicit, h, y):
 
 
 @formula
-def kick_round(several, bodies, rigid, round_body, round_inertia, h, forces, y):
+def kick_round(several, bodies, rigid, round_body, inverse_inertia, h, forces, y):
     """Change the angular velocities of the bodies with a scalar inertia."""
     if round_body is not None:
         for k in range(chosen(several, round_body)):
             w = omega_at(bodies, rigid) + 3 * member(several, round_body, k)
-            accumulate(y, w, scale(h / round_inertia[k], at(forces, w)))
+            accumulate(y, w, scale(h * inverse_inertia[k], at(forces, w)))
 
 
 @formula
@@ -106,8 +106,9 @@ def kick(model, bodies, rigid, h, forces, y):
     """Change all velocities by forces and moments that act for a time h."""
     for i in range(bodies):
         v = velocity_at(bodies) + 3 * i
-        accumulate(y, v, scale(h / model.mass[i], at(forces, v)))
-    kick_round(model.several, bodies, rigid, model.round_body, model.round_inertia, h, forces, y)
+        accumulate(y, v, scale(h * model.inverse_mass[i], at(forces, v)))
+    kick_round(model.several, bodies, rigid, model.round_body, model.inverse_round_inertia, h,
+               forces, y)
     kick_general(model.several, bodies, rigid, model.general_body, model.inverse_inertia, h,
                  forces, y)
 

@@ -4,8 +4,8 @@
 A state that goes on by a step as its rates are written, so that these need no memory of their own.
 
 What is written to Advancing[i] is a rate; times the step, it is added to number i of a change, and
-this to the start. Forces are divided by masses, and moments by inertias, together with the step:
-that does not have to wait until they are there.
+this to the start. The step is divided by masses and inertias, not forces and moments: that does
+not have to wait until they are there.
 """
 
 import operator
@@ -68,33 +68,35 @@ def _set_item(cells, i, rate):
     return add
 
 
-def put_linear_acceleration(out, i, force, mass):
+def put_linear_acceleration(out, i, force, inverse_mass):
     """Write the acceleration by a force (3,) to Cells, an array or Advancing."""
     if isinstance(out, Advancing):
-        advance_three(out, i, out.step * (1.0 / mass), force)
+        advance_three(out, i, out.step * inverse_mass, force)
     else:
-        put(out, i, linear_acceleration(force, mass))
+        put(out, i, linear_acceleration(force, inverse_mass))
 
 
-def put_angular_acceleration(out, i, moment, inertia):
+def put_angular_acceleration(out, i, moment, inverse_inertia):
     """Write likewise the angular acceleration by a moment (3,), where inertia is a number."""
     if isinstance(out, Advancing):
-        advance_three(out, i, out.step * (1.0 / inertia), moment)
+        advance_three(out, i, out.step * inverse_inertia, moment)
     else:
-        put(out, i, scalar_angular_acceleration(moment, inertia))
+        put(out, i, scalar_angular_acceleration(moment, inverse_inertia))
 
 
 @overload(put_linear_acceleration)
-def _put_linear_acceleration(out, i, force, mass):
+def _put_linear_acceleration(out, i, force, inverse_mass):
     if _advances(out):
-        return lambda out, i, force, mass: advance_three(out, i, out.step * (1.0 / mass), force)
-    return lambda out, i, force, mass: put(out, i, linear_acceleration(force, mass))
+        return lambda out, i, force, inverse_mass: advance_three(
+            out, i, out.step * inverse_mass, force)
+    return lambda out, i, force, inverse_mass: put(
+        out, i, linear_acceleration(force, inverse_mass))
 
 
 @overload(put_angular_acceleration)
-def _put_angular_acceleration(out, i, moment, inertia):
+def _put_angular_acceleration(out, i, moment, inverse_inertia):
     if _advances(out):
-        return lambda out, i, moment, inertia: advance_three(
-            out, i, out.step * (1.0 / inertia), moment)
-    return lambda out, i, moment, inertia: put(
-        out, i, scalar_angular_acceleration(moment, inertia))
+        return lambda out, i, moment, inverse_inertia: advance_three(
+            out, i, out.step * inverse_inertia, moment)
+    return lambda out, i, moment, inverse_inertia: put(
+        out, i, scalar_angular_acceleration(moment, inverse_inertia))

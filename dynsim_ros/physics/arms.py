@@ -88,9 +88,10 @@ def armed(model, p, q):
 @formula
 def with_springs(model, springs):
     """Return a Model with other SpringGroups."""
-    return Model(model.mass, model.rigid, model.several, model.round_body, model.round_inertia,
-                 model.general_body, model.inertia, model.inverse_inertia, model.weight, springs,
-                 model.connections, model.spring_bodies, model.air)
+    return Model(model.mass, model.inverse_mass, model.rigid, model.several, model.round_body,
+                 model.round_inertia, model.inverse_round_inertia, model.general_body,
+                 model.inertia, model.inverse_inertia, model.weight, springs, model.connections,
+                 model.spring_bodies, model.air)
 
 
 class Types:

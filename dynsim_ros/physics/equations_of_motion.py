@@ -7,15 +7,15 @@ from .vector import cross, scale, subtract, transform, transform_back
 
 
 @formula
-def linear_acceleration(force, mass):
+def linear_acceleration(force, inverse_mass):
     """Return a = F / m of the centre of mass: (3,) in world [m/s^2] (Newton)."""
-    return scale(1.0 / mass, force)
+    return scale(inverse_mass, force)
 
 
 @formula
-def scalar_angular_acceleration(moment, inertia):
+def scalar_angular_acceleration(moment, inverse_inertia):
     """Return alpha = M / I where I is the same about every axis: (3,) in world [rad/s^2]."""
-    return scale(1.0 / inertia, moment)
+    return scale(inverse_inertia, moment)
 
 
 @formula

@@ -71,9 +71,10 @@ class Model(NamedTuple):
 
     Rigid bodies, `rigid` of them, come before particles. several: how many bodies and how many of
     them are rigid, None for a single one: the kernels then need no loop and no memory. mass:
-    (bodies,) [kg]; round_body: (n,) indices of the bodies whose inertia is the same about every
-    axis, round_inertia: (n,) [kg m^2], or None; general_body: (m,) indices of the others, inertia
-    and inverse_inertia: (m, 3, 3) in body axes, or None; weight: (bodies, 3) force of gravity in
+    (bodies,) [kg], inverse_mass: their inverses [1/kg]; round_body: (n,) indices of the bodies
+    whose inertia is the same about every axis, round_inertia: (n,) [kg m^2] and its inverse, or
+    None; general_body: (m,) indices of the others, inertia and inverse_inertia: (m, 3, 3) in body
+    axes, or None; weight: (bodies, 3) force of gravity in
     world [N] or None; springs: tuple of SpringGroup or None; connections: the number of springs,
     None for a single one (or none); spring_bodies: (springs, 2) index of the body at P and at Q of
     each, -1 at an anchor; air: ModelAir or None. Where the structure is known when kernels are
@@ -81,10 +82,12 @@ class Model(NamedTuple):
     """
 
     mass: np.ndarray
+    inverse_mass: np.ndarray
     rigid: int
     several: tuple | None
     round_body: np.ndarray | None
     round_inertia: np.ndarray | None
+    inverse_round_inertia: np.ndarray | None
     general_body: np.ndarray | None
     inertia: np.ndarray | None
     inverse_inertia: np.ndarray | None
@@ -107,6 +110,8 @@ def build_model(scene):
     is_round = [isinstance(inertia, float) for inertia in inertias]
     # A kind of inertia that no body has is absent: None, not an empty array.
     round_body, general_body = np.flatnonzero(is_round), np.flatnonzero(np.logical_not(is_round))
+    mass = np.array([body.mass for body in bodies])
+    round_inertia = np.array([inertias[i] for i in round_body]) if len(round_body) else None
     matrices = np.array([inertias[i] for i in general_body]) if len(general_body) else None
     weight = None
     if scene.gravity:
@@ -115,10 +120,11 @@ def build_model(scene):
     springs = [spring for spring in scene.springs if spring.stiffness or spring.damping]
     groups = _spring_groups(scene, springs, bodies)
     return Model(
-        mass=np.array([body.mass for body in bodies]), rigid=len(inertias),
+        mass=mass, inverse_mass=1.0 / mass, rigid=len(inertias),
         several=(len(bodies), len(inertias)) if len(bodies) > 1 else None,
         round_body=round_body if len(round_body) else None,
-        round_inertia=np.array([inertias[i] for i in round_body]) if len(round_body) else None,
+        round_inertia=round_inertia,
+        inverse_round_inertia=None if round_inertia is None else 1.0 / round_inertia,
         general_body=general_body if len(general_body) else None,
         inertia=matrices,
         inverse_inertia=None if matrices is None else np.array([*map(inverse, matrices)]),

@@ -91,12 +91,12 @@ def put_from_outside(bodies, rigid, weight, air, pushes, works, y, out):
 
 
 @formula
-def accelerate_round(several, bodies, rigid, round_body, round_inertia, forces, out):
+def accelerate_round(several, bodies, rigid, round_body, inverse_inertia, forces, out):
     """Write angular accelerations of the bodies with a scalar inertia; forces: with moments."""
     if round_body is not None:
         for k in range(chosen(several, round_body)):
             w = omega_at(bodies, rigid) + 3 * member(several, round_body, k)
-            put_angular_acceleration(out, w, at(forces, w), round_inertia[k])
+            put_angular_acceleration(out, w, at(forces, w), inverse_inertia[k])
 
 
 @formula
@@ -146,9 +146,9 @@ def put_accelerations(model, drive, t, y, forces, out):
     apply_forces(model, drive, t, y, forces)
     for i in range(bodies):
         v = velocity_at(bodies) + 3 * i
-        put_linear_acceleration(out, v, at(forces, v), model.mass[i])
-    accelerate_round(model.several, bodies, rigid, model.round_body, model.round_inertia, forces,
-                     out)
+        put_linear_acceleration(out, v, at(forces, v), model.inverse_mass[i])
+    accelerate_round(model.several, bodies, rigid, model.round_body, model.inverse_round_inertia,
+                     forces, out)
     accelerate_general(model.several, bodies, rigid, model.general_body, model.inertia,
                        model.inverse_inertia, y, forces, out)
     put_powers(drive.works, work_at(bodies, rigid), forces, out)

@@ -174,7 +174,7 @@ def machine_code(scene):
 
 def test_compiled_code_of_a_free_particle():
     # 1 / m times nothing
-    assert machine_code(PARTICLE) == {'sum': 0, 'product': 1, 'division': 1, 'root': 0,
+    assert machine_code(PARTICLE) == {'sum': 0, 'product': 1, 'division': 0, 'root': 0,
                                       'fused': 0}
 
 

@@ -24,7 +24,7 @@ def solved(formula, inertia, rotation, moment, omega):
 @compiled_and_plain(linear_acceleration)
 def test_newton(formula):
     for force in vectors(10):
-        np.testing.assert_allclose(2.5 * np.array(formula(force, 2.5)), force, rtol=1e-15)
+        np.testing.assert_allclose(2.5 * np.array(formula(force, 0.4)), force, rtol=1e-15)
 
 
 @compiled_and_plain(angular_acceleration)
@@ -53,7 +53,7 @@ def test_euler_is_the_derivative_of_angular_momentum(formula):
 @compiled_and_plain(scalar_angular_acceleration)
 def test_scalar_inertia(formula):
     for moment in vectors(10):
-        np.testing.assert_allclose(0.4 * np.array(formula(moment, 0.4)), moment, rtol=1e-15)
+        np.testing.assert_allclose(0.4 * np.array(formula(moment, 2.5)), moment, rtol=1e-15)
 
 
 @compiled_and_plain(angular_acceleration)
@@ -61,7 +61,7 @@ def test_full_equation_collapses_to_the_scalar_one_where_inertia_is_a_scalar(for
     turn = Rotation.from_rotvec([0.3, -1.0, 0.7]).as_matrix()
     moment, omega = vectors(2)
     np.testing.assert_allclose(solved(formula, 0.4 * np.eye(3), turn, moment, omega),
-                               scalar_angular_acceleration(moment, 0.4), rtol=1e-14)
+                               scalar_angular_acceleration(moment, 2.5), rtol=1e-14)
 
 
 @compiled_and_plain(angular_acceleration)

@@ -15,9 +15,9 @@ BARE = Scene(bodies=(Particle(name='p', mass=1),))
 
 def test_a_bare_particle_has_a_mass_and_nothing_else():
     model = build_model(BARE)
-    assert model.mass.tolist() == [1.0]
+    assert model.mass.tolist() == model.inverse_mass.tolist() == [1.0]
     assert model.rigid == 0
-    assert all(part is None for part in model[2:])
+    assert all(part is None for part in model[3:])
 
 
 def test_gravity():
