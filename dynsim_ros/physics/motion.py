@@ -9,6 +9,7 @@ States are arrays or Cells, of numbers or of Lanes. Absent terms (None) are not 
 from numba import types
 
 from .advancing import put_angular_acceleration, put_linear_acceleration
+from .each import each
 from .equations_of_motion import angular_acceleration
 from .forces import (apply_springs, begin_works, put_powers, with_linear_drag, with_push,
                      with_rotational_drag, with_weight)
@@ -35,18 +36,10 @@ def apply_all_springs(several, connections, bodies, rigid, springs, anchors, mov
 @overload(apply_all_springs)
 def _apply_all_springs(several, connections, bodies, rigid, springs, anchors, moving, works, t, y,
                        out):
-    def nothing(several, connections, bodies, rigid, springs, anchors, moving, works, t, y, out):
-        pass
-
-    # No loop, of which the compiler would not know that it can be written out.
-    def first_and_others(several, connections, bodies, rigid, springs, anchors, moving, works, t,
-                         y, out):
-        apply_group(several, connections, bodies, rigid, springs[0], anchors, moving, works, t, y,
-                    out)
-        apply_all_springs(several, connections, bodies, rigid, springs[1:], anchors, moving, works,
-                          t, y, out)
-
-    return nothing if isinstance(springs, types.NoneType) or not len(springs) else first_and_others
+    return each('several, connections, bodies, rigid, springs, anchors, moving, works, t, y, out',
+                'apply_group(several, connections, bodies, rigid, springs[{i}], anchors, moving, '
+                'works, t, y, out)', 0 if isinstance(springs, types.NoneType) else len(springs),
+                apply_group=apply_group)
 
 
 @formula

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 
 from .arms import is_none, Types, with_springs
+from .each import each
 from .forces import arm_of
 from .jit import formula, overload
 from .model import SpringGroup
@@ -106,8 +107,6 @@ def kept(group):
                        group.damping, group.reach_at, True)
 
 
-# Loops over groups, each of a type of its own, are written out by calling themselves.
-
 def kept_groups(springs):
     """Return some SpringGroups as `kept` has them."""
     return tuple(map(kept, springs))
@@ -115,9 +114,7 @@ def kept_groups(springs):
 
 @overload(kept_groups)
 def _kept_groups(springs):
-    if not len(springs):
-        return lambda springs: ()
-    return lambda springs: (kept(springs[0]),) + kept_groups(springs[1:])
+    return each('springs', 'kept(springs[{i}])', len(springs), kept=kept)
 
 
 def spring_reaches(bodies, springs, anchors, moving, t, y):
@@ -127,13 +124,9 @@ def spring_reaches(bodies, springs, anchors, moving, t, y):
 
 @overload(spring_reaches)
 def _spring_reaches(bodies, springs, anchors, moving, t, y):
-    if not len(springs):
-        return lambda bodies, springs, anchors, moving, t, y: ()
-
-    def first_and_others(bodies, springs, anchors, moving, t, y):
-        return ((spring_reach(bodies, springs[0], anchors, moving, t, y),)
-                + spring_reaches(bodies, springs[1:], anchors, moving, t, y))
-    return first_and_others
+    return each('bodies, springs, anchors, moving, t, y',
+                'spring_reach(bodies, springs[{i}], anchors, moving, t, y)', len(springs),
+                spring_reach=spring_reach)
 
 
 def put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, state):
@@ -144,13 +137,9 @@ def put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, sta
 
 @overload(put_spring_reaches)
 def _put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, state):
-    def nothing(bodies, springs, reaches, anchors, moving, way, here, state):
-        pass
-
-    def first_and_others(bodies, springs, reaches, anchors, moving, way, here, state):
-        put_spring_reach(bodies, springs[0], reaches[0], anchors, moving, way, here, state)
-        put_spring_reaches(bodies, springs[1:], reaches[1:], anchors, moving, way, here, state)
-    return first_and_others if len(springs) else nothing
+    return each('bodies, springs, reaches, anchors, moving, way, here, state',
+                'put_spring_reach(bodies, springs[{i}], reaches[{i}], anchors, moving, way, here, '
+                'state)', len(springs), put_spring_reach=put_spring_reach)
 
 
 def _are_kept(model):
