@@ -24,7 +24,7 @@ from ..physics.state import counts
 # Found by trying all that fit into the lanes, on particles. Where less is asked for, steps of the
 # second ones would be too long for the dense output.
 SEQUENCES = (Sequences(2e-8, (5, 7, 10, 11, 12), share=2.0, reach=5.0),
-             Sequences(0.0, (4, 6, 7, 9, 11, 13), share=0.3, reach=4.5))
+             Sequences(0.0, (4, 5, 6, 7, 10, 11), share=0.7, reach=4.2))
 
 
 def stormer_schedule(substeps=SEQUENCES[0].substeps, stages=None):
