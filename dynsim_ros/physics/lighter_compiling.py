@@ -20,7 +20,7 @@ def _copy_of_scope(scope, memo):
     Copy an ir.Scope with its own lists of variables, but not every variable in them.
 
     To write a part into a function, numba copies each of its blocks, and with each block all
-    variables of the whole part: most of that tenth, for copies that it throws away.
+    variables of the whole part: a tenth of the time, for copies that it throws away.
     """
     new = memo[id(scope)] = copy.copy(scope)
     new.localvars = copy.copy(scope.localvars)
@@ -37,8 +37,8 @@ def _no_timer(kind, callback):
     Measure nothing, in place of numba's event.install_timer.
 
     It measures how long LLVM and numba's lock are held for each function, and where one is
-    compiled for another, for that one, too: each of a quarter of a million calls of LLVM is told
-    to some ten timers.
+    compiled for another, for that one, too: each call of LLVM, a quarter of a million for a large
+    scene, is told to some seven timers.
     """
     return nullcontext()
 
