@@ -146,8 +146,8 @@ def fill_pulls(several, bodies, rigid, count, spring_bodies, memory, here, new, 
 
 
 @formula
-def fill_matrix(several, bodies, rigid, count, spring_bodies, mass, table, h, memory, springs,
-                matrix):
+def fill_matrix(several, bodies, rigid, count, spring_bodies, inverse_mass, table, h, memory,
+                springs, matrix):
     """Write the matrix of the equations of the springs' pulls, columns in a row."""
     total_ = STAGES * count
     for j in range(count):
@@ -165,7 +165,7 @@ def fill_matrix(several, bodies, rigid, count, spring_bodies, mass, table, h, me
                             if body >= 0 and body == spring_bodies[k, far]:
                                 i = body_of(several, spring_bodies[:, end], j)
                                 sign = 1.0 if end == far else -1.0
-                                coupling = coupling + (sign / mass[i]) * dot(
+                                coupling = coupling + (sign * inverse_mass[i]) * dot(
                                     u, kept_at(memory, other, 0, stage))
                                 if body < rigid:
                                     coupling = coupling + sign * dot(
@@ -235,8 +235,8 @@ def correct(model, drive, bodies, rigid, size, connections, groups, table, t, h,
         fill_pulls(model.several, bodies, rigid, count, model.spring_bodies, memory, here, new,
                    springs, pulls)
         if not is_settled:
-            fill_matrix(model.several, bodies, rigid, count, model.spring_bodies, model.mass,
-                        table, h, memory, springs, matrix)
+            fill_matrix(model.several, bodies, rigid, count, model.spring_bodies,
+                        model.inverse_mass, table, h, memory, springs, matrix)
             factorise(STAGES * count, memory, matrix, pivots)
         substitute(STAGES * count, memory, matrix, pivots, pulls)
         relieve(model.several, bodies, rigid, count, model.spring_bodies, model.mass, memory,

@@ -15,7 +15,7 @@ def easiest_turns(model):
     """Return (bodies,) the largest inverse moment of inertia of each, 0 for particles."""
     easiest = np.zeros(len(model.mass))
     if model.round_body is not None:
-        easiest[model.round_body] = 1.0 / model.round_inertia
+        easiest[model.round_body] = model.inverse_round_inertia
     if model.general_body is not None:
         # The trace of a positive matrix is above its largest eigenvalue.
         easiest[model.general_body] = [matrix[0, 0] + matrix[1, 1] + matrix[2, 2]
@@ -33,7 +33,7 @@ def drag_rate(model):
 
 def spring_rates(model):
     """Return bounds of the rates of springs, of oscillation, and of dampers, of decay [1/s]."""
-    lightness, easiest = 1.0 / model.mass, easiest_turns(model)
+    lightness, easiest = model.inverse_mass, easiest_turns(model)
     stiffness, damping = np.zeros(len(model.mass)), np.zeros(len(model.mass))
     for group in model.springs or ():
         for ends in (group.p, group.q):

@@ -71,14 +71,14 @@ class Model(NamedTuple):
 
     Rigid bodies, `rigid` of them, come before particles. several: how many bodies and how many of
     them are rigid, None for a single one: the kernels then need no loop and no memory. mass:
-    (bodies,) [kg], inverse_mass: their inverses [1/kg]; round_body: (n,) indices of the bodies
-    whose inertia is the same about every axis, round_inertia: (n,) [kg m^2] and its inverse, or
-    None; general_body: (m,) indices of the others, inertia and inverse_inertia: (m, 3, 3) in body
-    axes, or None; weight: (bodies, 3) force of gravity in
-    world [N] or None; springs: tuple of SpringGroup or None; connections: the number of springs,
-    None for a single one (or none); spring_bodies: (springs, 2) index of the body at P and at Q of
-    each, -1 at an anchor; air: ModelAir or None. Where the structure is known when kernels are
-    compiled, several and all indices are Known: see structure.
+    (bodies,) [kg], inverse_mass: 1 / m [1/kg]; round_body: (n,) indices of the bodies whose
+    inertia is the same about every axis, round_inertia: (n,) [kg m^2], inverse_round_inertia: one
+    over it, or None; general_body: (m,) indices of the others, inertia and inverse_inertia:
+    (m, 3, 3) in body axes, or None; weight: (bodies, 3) force of gravity in world [N] or None;
+    springs: tuple of SpringGroup or None; connections: the number of springs, None for a single
+    one (or none); spring_bodies: (springs, 2) index of the body at P and at Q of each, -1 at an
+    anchor; air: ModelAir or None. Where the structure is known when kernels are compiled, several
+    and all indices are Known: see structure.
     """
 
     mass: np.ndarray

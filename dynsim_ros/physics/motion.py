@@ -36,10 +36,9 @@ def apply_all_springs(several, connections, bodies, rigid, springs, anchors, mov
 @overload(apply_all_springs)
 def _apply_all_springs(several, connections, bodies, rigid, springs, anchors, moving, works, t, y,
                        out):
-    return each('several, connections, bodies, rigid, springs, anchors, moving, works, t, y, out',
+    return each(apply_all_springs,
                 'apply_group(several, connections, bodies, rigid, springs[{i}], anchors, moving, '
-                'works, t, y, out)', 0 if isinstance(springs, types.NoneType) else len(springs),
-                apply_group=apply_group)
+                'works, t, y, out)', 0 if isinstance(springs, types.NoneType) else len(springs))
 
 
 @formula

@@ -114,7 +114,7 @@ def kept_groups(springs):
 
 @overload(kept_groups)
 def _kept_groups(springs):
-    return each('springs', 'kept(springs[{i}])', len(springs), kept=kept)
+    return each(kept_groups, 'kept(springs[{i}])', len(springs))
 
 
 def spring_reaches(bodies, springs, anchors, moving, t, y):
@@ -124,9 +124,8 @@ def spring_reaches(bodies, springs, anchors, moving, t, y):
 
 @overload(spring_reaches)
 def _spring_reaches(bodies, springs, anchors, moving, t, y):
-    return each('bodies, springs, anchors, moving, t, y',
-                'spring_reach(bodies, springs[{i}], anchors, moving, t, y)', len(springs),
-                spring_reach=spring_reach)
+    return each(spring_reaches, 'spring_reach(bodies, springs[{i}], anchors, moving, t, y)',
+                len(springs))
 
 
 def put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, state):
@@ -137,9 +136,8 @@ def put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, sta
 
 @overload(put_spring_reaches)
 def _put_spring_reaches(bodies, springs, reaches, anchors, moving, way, here, state):
-    return each('bodies, springs, reaches, anchors, moving, way, here, state',
-                'put_spring_reach(bodies, springs[{i}], reaches[{i}], anchors, moving, way, here, '
-                'state)', len(springs), put_spring_reach=put_spring_reach)
+    return each(put_spring_reaches, 'put_spring_reach(bodies, springs[{i}], reaches[{i}], '
+                'anchors, moving, way, here, state)', len(springs))
 
 
 def _are_kept(model):

@@ -8,20 +8,26 @@ import numpy as np
 import pytest
 
 twice = numba.njit(lambda x: x + x)
+
+
+def doubled(members, k):
+    return tuple(twice.py_func(member) for member in members)
+
+
 MEMBERS = (2, 1.5, np.array([1.0, -3.0]), (1, 2.0))
 
 
 @pytest.mark.parametrize('compiled', [numba.njit, lambda function: function],
                          ids=['compiled', 'plain'])
 def test_every_member_in_turn(compiled):
-    function = compiled(each('members, k', 'twice(members[{i}])', len(MEMBERS), twice=twice))
+    function = compiled(each(doubled, 'twice(members[{i}])', len(MEMBERS)))
     whole, half, array, pair = function(MEMBERS, 0)
     assert (whole, half, array.tolist(), pair) == (4, 3.0, [2.0, -6.0], (1, 2.0, 1, 2.0))
 
 
 def test_no_members():
-    assert numba.njit(each('members', 'members[{i}]', 0))(()) == ()
+    assert numba.njit(each(doubled, 'twice(members[{i}])', 0))((), 0) == ()
 
 
 def test_the_number_of_each():
-    assert each('k', '{i} * k', 3)(10) == (0, 10, 20)
+    assert each(doubled, '{i} * k', 3)((), 10) == (0, 10, 20)
