@@ -35,8 +35,7 @@ class BodyView:
         light, dark = _COLORS[number % len(_COLORS)]
         self.meshes = [
             api.add_mesh_simple(f'{name}/{part}', *octants(isinstance(body, Box), part == 'dark'),
-                                color=color if self.turns else dark,
-                                flat_shading=isinstance(body, Box))
+                                color=color if self.turns else dark)
             for part, color in (('light', light), ('dark', dark))]
         self.label = api.add_label(f'{name}/name', body.name, anchor='bottom-left',
                                    position=(0.0, 0.0, 0.0), font_screen_scale=0.9)
@@ -84,7 +83,10 @@ class AnchorView:
     """An anchor: a small cube. position: (3,) as shown [m]."""
 
     def __init__(self, api, name, anchor, space):
-        self._cube = api.add_box(name, color=_ANCHOR, dimensions=(0.35 * space.unit,) * 3)
+        # Its faces share no vertices: flat also as other meshes are shaded, which browsers have a
+        # program for already; another takes 0.1 s where there is no graphics card.
+        self._cube = api.add_box(name, color=_ANCHOR, dimensions=(0.35 * space.unit,) * 3,
+                                 flat_shading=False)
         self.label = api.add_label(f'{name}/name', anchor.name, anchor='bottom-left',
                                    position=(0.0, 0.0, 0.3 * space.unit), font_screen_scale=0.9)
         self.show(np.array(anchor.position))
