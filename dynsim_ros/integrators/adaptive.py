@@ -33,9 +33,11 @@ from ..physics.state import counts, moving_size, normalise, omega_at, quaternion
 # The clock: whole seconds, end and length of the last step, length of the next one, binary
 # logarithm of the last error estimate over the tolerance, whether the dense output of the last
 # step is built; for how many steps the watch has seen what it waits for, and the steps have become
-# shorter; what rounding leaves of the error estimate of a step; for how long all has been calm.
-BASE, END, STEP, NEXT, LAST_ERROR, DENSE, WATCHED, SHRUNK, FLOOR, CALM = range(10)
-CLOCK_SIZE = 10
+# shorter; what rounding leaves of the error estimate of a step; for how long all has been calm;
+# after how many steps another method may be tried, and how many more have to pass before the time
+# after that.
+(BASE, END, STEP, NEXT, LAST_ERROR, DENSE, WATCHED, SHRUNK, FLOOR, CALM, TRIAL, WAIT) = range(12)
+CLOCK_SIZE = 12
 # Length of the last step before the first one.
 TO_BEGIN = -1.0
 # What is counted: steps, rejected steps, evaluations of the right-hand side in a row, steps that
@@ -54,7 +56,12 @@ _SHORTEST = 1e-15
 # Steps that become shorter so many times in a row do so because of rounding.
 _PERSISTENCE = 20.0
 # So many steps in a row convince the watch that they are long, or short.
-PATIENCE, _SHORT_PATIENCE = 10, 3
+_PATIENCE, _SHORT_PATIENCE = 10, 3
+# Steps until the next trial of another method: at first, and at most.
+_SHORTEST_WAIT, _LONGEST_WAIT = 32.0, 4096.0
+# Where velocities change by more than this part of them in an explicit step, a stiff step, several
+# times as long, would fail; noise of the step control is not above so many tolerances.
+_SMOOTH, _NOISE = 0.3, 100.0
 # Units of the last place that rounding leaves of an error estimate.
 _UNITS = 20.0 * 2.0 ** -52
 # How long a run has to be calm before it is at rest [s].
@@ -146,6 +153,44 @@ def watched(watch, step, seen):
     if watch > 0.0 and step >= watch or watch < 0.0 and step <= -watch:
         return seen + 1.0
     return 0.0
+
+
+@formula
+def is_smooth(first, end, y, y_new, noise):
+    """Return whether no velocity from `first` to before `end` changes much from y to y_new."""
+    size, change = noise, 0.0
+    for i in range(first, end):
+        size = max(size, abs(y[i]), abs(y_new[i]))
+        change = max(change, abs(y_new[i] - y[i]))
+    return change <= _SMOOTH * size
+
+
+@formula
+def postpone(clock, steps):
+    """Let another method be tried some steps later only, and more of them each time."""
+    wait = max(clock[WAIT], _SHORTEST_WAIT)
+    clock[TRIAL] = steps + wait
+    clock[WAIT] = min(math.floor(1.25 * wait), _LONGEST_WAIT)
+
+
+@formula
+def speaks_for_another(watch, bodies, rigid, y, y_new, noise, steps, clock):
+    """
+    Return whether, once the watch is convinced, another method is to be tried.
+
+    The explicit one at once; a stiff one when its time has come and the last step, from y to
+    y_new, was smooth; noise: velocities that are none [m/s, rad/s]; steps: taken so far.
+    """
+    if watch < 0.0:
+        return True
+    if steps < clock[TRIAL]:
+        return False
+    omegas = omega_at(bodies, rigid)
+    if (is_smooth(3 * bodies, 6 * bodies, y, y_new, noise)
+            and is_smooth(omegas, omegas + 3 * rigid, y, y_new, noise)):
+        return True
+    postpone(clock, steps)
+    return False
 
 
 @formula
@@ -290,6 +335,7 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
               y, rate)
     status = REACHED
     stalled = 0
+    noise = _NOISE * tolerance
     tolerance = max(MARGIN * tolerance, clock[FLOOR])
     # What a next step waits for is multiplied, not divided, and not in memory.
     per_tolerance, per_power = 1.0 / tolerance, 1.0 / power
@@ -308,10 +354,11 @@ def advance(model, drive, tableaux, power, tolerance, fastest, limit, budget, wa
             status = BUDGET_SPENT
             break
         clock[WATCHED] = watched(watch, following, clock[WATCHED])
-        if clock[WATCHED] >= (PATIENCE if watch > 0.0 else _SHORT_PATIENCE):
+        if clock[WATCHED] >= (_PATIENCE if watch > 0.0 else _SHORT_PATIENCE):
             clock[WATCHED] = 0.0
-            status = SWITCH
-            break
+            if speaks_for_another(watch, bodies, rigid, y, y_new, noise, counted[STEPS], clock):
+                status = SWITCH
+                break
         if clock[CALM] >= CALM_TIME:
             clock[CALM] = 0.0
             status = AT_REST

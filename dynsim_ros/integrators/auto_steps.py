@@ -12,21 +12,16 @@ steps themselves, so that a repeated run decides alike.
 
 import math
 
-from .adaptive import AT_REST, BASE, END, NEXT, PATIENCE, REACHED, STEPS, SWITCH, WATCHED
+from .adaptive import AT_REST, BASE, END, NEXT, postpone, REACHED, STEPS, SWITCH, WAIT
 from .adaptive_steps import AdaptiveSteps, FAR, Walk
 from .closed_scene import comes_to_rest
 from .stiffness import held_back_step
 
 # The first step that a stiff method tries, over what it has to be to be worth it.
 _AMBITION = 1.6
-# Steps until the next trial: at first, and at most.
-_SHORTEST_WAIT, _LONGEST_WAIT = 32, 4096
 # A run is calm when no velocity is above this part of the tolerance [1/s]; it is then at rest
 # where the air stops what still moves within the inverse of that.
 _CALM = 1e-2
-# Where velocities change by more than this part of them in an explicit step, a stiff step, several
-# times as long, would fail; noise of the step control is not above so many tolerances.
-_SMOOTH, _NOISE = 0.3, 100.0
 # Stiff steps in a row after which a trial was a success.
 _SUCCESS = 20
 
@@ -47,7 +42,7 @@ class AutoSteps(Walk):
         self._new_stiff = lambda: AdaptiveSteps(stiff(), tolerance, model, drive, size, springs)
         self.stiff = None
         self.current = self.explicit
-        self._wait, self._next_trial, self._entered = _SHORTEST_WAIT, 0, 0
+        self._entered = 0
         self._model, self._drive, self._asleep_at = model, drive, None
 
     @property
@@ -66,7 +61,7 @@ class AutoSteps(Walk):
         if self.stiff is not None:
             self.stiff.reset()
         self.current = self.explicit
-        self._wait, self._next_trial, self._entered = _SHORTEST_WAIT, 0, 0
+        self._entered = 0
 
     def prepare(self):
         """Compile, or load from the cache, what the steps need, or do nothing."""
@@ -108,7 +103,7 @@ class AutoSteps(Walk):
             elif at_work is self.stiff:
                 self._hand_back()
             else:
-                self._switch(limit, grid)
+                self._try_stiff(limit, grid)
 
     def _is_asleep(self):
         # A step that went past a command has been taken back: that was before.
@@ -123,41 +118,15 @@ class AutoSteps(Walk):
         else:
             self.explicit.calm = 0.0
 
-    def _switch(self, limit, grid):
-        """Go over to the stiff method if it is time to try that and it succeeds."""
-        steps = self.explicit.counts.item(STEPS)
-        if steps >= self._next_trial:
-            if self._is_smooth():
-                self._try_stiff(limit, grid)
-            else:
-                self._postpone()
-        # Whenever its patience is at an end the watch tells, and goes on from the step that it saw
-        # last: it has nothing to tell before the next trial.
-        wait, period = int(self._next_trial) - steps, PATIENCE - 1
-        self.explicit.clock[WATCHED] = period * (1 - max(1, -(-wait // period)))
-
-    def _is_smooth(self):
-        """Return whether no velocity has changed much in the last explicit step."""
-        bodies, rigid = len(self._model.mass), self._model.rigid
-        before, after = self.explicit.states[:2].tolist()
-        omegas = 6 * bodies + 4 * rigid
-        for part in slice(3 * bodies, 6 * bodies), slice(omegas, omegas + 3 * rigid):
-            first, last = before[part], after[part]
-            size = max(map(abs, (*first, *last, _NOISE * self.explicit.tolerance)))
-            if any(abs(b - a) > _SMOOTH * size for a, b in zip(first, last)):
-                return False
-        return True
-
     def _hand_back(self):
         if self.stiff.counts[STEPS] - self._entered >= _SUCCESS:
-            self._wait = _SHORTEST_WAIT
+            self.explicit.clock[WAIT] = 0.0
         self._postpone()
         self.explicit.follow(self.stiff, self.explicit.clock[NEXT])
         self.current = self.explicit
 
     def _postpone(self):
-        self._next_trial = self.explicit.counts[STEPS] + self._wait
-        self._wait = min(self._wait * 5 // 4, _LONGEST_WAIT)
+        postpone(self.explicit.clock, self.explicit.counts.item(STEPS))
 
     def _try_stiff(self, limit, grid):
         """Go over to the stiff method if it can take a step that is long enough."""

@@ -15,7 +15,7 @@ from .state_hash import state_hash
 from ..scene import SceneError
 from ..scene.yaml_file import parse_scene, scene_to_yaml
 
-FORMAT, VERSION = 'dynsim_ros checkpoint', 1
+FORMAT, VERSION = 'dynsim_ros checkpoint', 2
 
 
 class CheckpointError(ValueError):

@@ -83,7 +83,6 @@ def _(steps: AutoSteps):
     return {'is_stiff': steps.current is steps.stiff, 'at_work': remember(steps.current),
             'explicit': _idle(steps.explicit),
             'stiff': None if steps.stiff is None else _idle(steps.stiff),
-            'wait': steps._wait, 'next_trial': int(steps._next_trial),
             'entered': int(steps._entered),
             'asleep_at': None if steps._asleep_at is None else float(steps._asleep_at)}
 
@@ -96,7 +95,6 @@ def _(steps: AutoSteps, memory, begun):
         _put_idle(steps.stiff, memory['stiff'])
     steps.current = steps.stiff if memory['is_stiff'] else steps.explicit
     recall(steps.current, memory['at_work'], begun)
-    steps._wait, steps._next_trial = int(memory['wait']), int(memory['next_trial'])
     steps._entered, asleep_at = int(memory['entered']), memory['asleep_at']
     steps._asleep_at = None if asleep_at is None else float(asleep_at)
 

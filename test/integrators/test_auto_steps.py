@@ -3,6 +3,7 @@
 """When the choice between the explicit and the stiff method tries the stiff one."""
 
 from by_hand import nothing_compiled
+from dynsim_ros.integrators.adaptive import TRIAL
 from dynsim_ros.integrators.stiffness import held_back_step
 from dynsim_ros.physics.model import build_model
 from dynsim_ros.simulation.propagator import Propagator
@@ -22,7 +23,7 @@ def test_not_where_a_long_step_turns_velocities_round():
     count = int(steps.explicit.counts[0])
     # Steps are long enough for a trial, and its time has come; but nothing speaks for it.
     assert 8.0 / count > held_back_step(build_model(load('S2')[0]), steps.explicit.method.reach)
-    assert steps._next_trial > 0 and steps.stiff is None
+    assert steps.explicit.clock[TRIAL] > 0 and steps.stiff is None
 
 
 def test_where_stability_alone_keeps_steps_short():
