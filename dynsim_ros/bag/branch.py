@@ -90,10 +90,10 @@ def _commands(simulator, recorded, changes):
     """Return the commands of a branch in order of time."""
     if changes.commands is None:
         return _possible(simulator.scene, recorded)
-    for time_ns, command in changes.commands:
+    for time_ns, _ in changes.commands:
         if time_ns < simulator.time_ns:
             raise SceneError(f'a command at {time_ns / SECOND:.9g} s lies before the branch, '
-                             f'which begins at {simulator.time:.9g} s: {command}')
+                             f'which begins at {simulator.time:.9g} s: leave it out')
     kept = _possible(simulator.scene, recorded) if changes.keep_commands else []
     return sorted([*kept, *changes.commands], key=lambda timed: timed[0])
 

@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from pathlib import Path
 import sys
 
 from .bag_options import add_selection, load_selection
+from .command_line import CommandLine
 from .offline_program import run_offline
 
 _DESCRIPTION = """\
@@ -50,11 +50,9 @@ def _export(args: Sequence[str], _) -> int:
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> CommandLine:
     """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(
-        'export', description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = CommandLine('export', _DESCRIPTION, _EPILOG)
     parser.add_argument('file', metavar='FILE', help='the bag')
     parser.add_argument('-o', '--output', metavar='OUTPUT',
                         help='the folder, or a file that ends in .npz; never overwritten '

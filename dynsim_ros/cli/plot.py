@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from pathlib import Path
 import sys
 
 from .bag_options import add_selection, load_selection
+from .command_line import CommandLine
 from .offline_program import run_offline
 
 _DESCRIPTION = """\
@@ -78,11 +78,9 @@ def _names(runs) -> tuple[str, str]:
     return (first.name, second.name) if first.name != second.name else (str(first), str(second))
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> CommandLine:
     """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(
-        'plot', description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = CommandLine('plot', _DESCRIPTION, _EPILOG)
     parser.add_argument('file', metavar='FILE', help='the bag')
     parser.add_argument('-o', '--output', metavar='FIGURE',
                         help='the figure: .png, .pdf or .svg (default: the name of the bag with '

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 
+from .command_line import CommandLine
 from .offline_program import run_offline
 from .terminal import write
 
@@ -64,10 +64,8 @@ def _lines(found):
         yield f'{found.path}: the damaged file is kept as {found.kept}'
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        'recover', description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+def _parser() -> CommandLine:
+    parser = CommandLine('recover', _DESCRIPTION, _EPILOG)
     add = parser.add_argument
     add('files', metavar='FILE', nargs='+', help='an MCAP file, of any program')
     add('-o', '--output', metavar='FILE',

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import math
 import sys
 
+from .command_line import CommandLine
 from .progress import Progress
 from .ros_arguments import split
 from .signals import Signals
@@ -90,11 +91,9 @@ def _play(player, bag, quiet: bool, signals: Signals):
     progress.say(('replayed' if finished else 'stopped after') + f' {player.published} messages')
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> CommandLine:
     """Return the parser of the command line, without the part that belongs to ROS."""
-    parser = argparse.ArgumentParser(
-        'replay', description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = CommandLine('replay', _DESCRIPTION, _EPILOG)
     add = parser.add_argument
     add('file', metavar='FILE', help='the bag')
     add('-r', '--rate', type=_positive, default=1.0, metavar='X',

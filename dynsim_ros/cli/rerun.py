@@ -9,6 +9,7 @@ import math
 import sys
 import time
 
+from .command_line import CommandLine
 from .offline_program import run_offline
 from .progress import Progress
 from .simulate import named_values, run_to_end
@@ -100,6 +101,12 @@ def _compare(run, begin_ns, until_ns, quiet, signals) -> int:
     elapsed = time.monotonic() - started
     if signals.requested:
         return 130
+    if not outcome.states + outcome.hashes and outcome.difference is None:
+        progress.clear()
+        begin = run.begin_ns if begin_ns is None else begin_ns
+        end = run.end_ns if until_ns is None else until_ns
+        raise ValueError(f'{run.path} holds no state from {begin * 1e-9:.9g} s to '
+                         f'{end * 1e-9:.9g} s: there is nothing to compare')
     if outcome.difference is not None:
         progress.say(f'different from {outcome.difference}')
         return 1
@@ -117,6 +124,7 @@ def _other_method(run, begin_ns, until_ns, method, quiet, signals) -> int:
     one = simulator_at(run, run.begin_ns if begin_ns is None else begin_ns)
     other = one.twin()
     other.apply(SetValues(method))
+    _check_method(other.settings.integrator, method)
     end_ns = run.end_ns if until_ns is None else until_ns
     progress = _progress(run, one.time_ns, end_ns, quiet)
     since_ns, since_tick = one.time_ns, one.tick
@@ -136,6 +144,17 @@ def _other_method(run, begin_ns, until_ns, method, quiet, signals) -> int:
     for largest in found:
         progress.say(f'  {largest}')
     return 0
+
+
+def _check_method(integrator, given):
+    """Raise ValueError where what was given of a method means nothing to the integrator."""
+    from ..integrators import method_named
+
+    has_tolerance = method_named(integrator).advance is None
+    useless, useful = ('step', 'tolerance') if has_tolerance else ('tolerance', 'step')
+    if useless in given:
+        raise ValueError(f'--{useless}: means nothing to {integrator}, which goes by its '
+                         f'{useful}; give --{useful}, or another --integrator')
 
 
 def _branch(run, begin_ns, until_ns, options, signals) -> int:
@@ -190,10 +209,8 @@ def _warn(text):
     print(f'warning: {text}', file=sys.stderr)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        'rerun', description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+def _parser() -> CommandLine:
+    parser = CommandLine('rerun', _DESCRIPTION, _EPILOG)
     add = parser.add_argument
     add('file', metavar='FILE', help='the bag')
     add('--from', dest='begin', type=_seconds, metavar='SECONDS',

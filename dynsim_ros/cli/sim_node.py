@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import argparse
 import gc
 import inspect
 import os
 import sys
 
+from .command_line import CommandLine
 from .ros_arguments import split
 from .signals import Signals
 from .status_line import StatusLine
@@ -123,11 +123,9 @@ def _status(node) -> str:
             f'{recorded}')
 
 
-def _parser(own) -> argparse.ArgumentParser:
+def _parser(own) -> CommandLine:
     """Return the parser of the command line, without the part that belongs to ROS."""
-    parser = argparse.ArgumentParser(
-        'sim_node', description=_DESCRIPTION, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = CommandLine('sim_node', _DESCRIPTION)
     if {'-h', '--help'} & set(own):
         # Takes a while to gather.
         parser.epilog = _epilog()

@@ -8,6 +8,7 @@ import argparse
 import sys
 import time
 
+from .command_line import CommandLine
 from .offline_program import run_offline
 from .progress import Progress
 
@@ -79,8 +80,12 @@ def _simulate(args, signals) -> int:
                      f'carried out, the first at {run.commands[0][0] * 1e-9:g} s')
     if options.error and status == 0:
         # The run itself again, from its start, and a finer one.
-        progress.say(f'error at the end, estimated: '
-                     f'{estimate_error(simulator, commands, options.duration)}')
+        try:
+            estimate = estimate_error(simulator, commands, options.duration)
+        except ValueError as none:
+            raise ValueError('--error: nothing more exact to compare the run with: '
+                             f'{none}') from None
+        print(f'error at the end, estimated: {estimate}')
     if error:
         print(f'error: {error}', file=sys.stderr)
     return status
@@ -113,6 +118,8 @@ def named_values(assignments) -> dict:
         name, equals, value = text.partition('=')
         if not equals or not name:
             raise ValueError(f"--set: '{text}' is not of the form NAME=VALUE")
+        if name.strip() in values:
+            raise ValueError(f'--set {text}: {name.strip()} is set twice')
         try:
             values[name.strip()] = load_yaml(value)
         except ValueError as error:
@@ -120,10 +127,8 @@ def named_values(assignments) -> dict:
     return values
 
 
-def _parser(own) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        'simulate', description=_DESCRIPTION, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+def _parser(own) -> CommandLine:
+    parser = CommandLine('simulate', _DESCRIPTION)
     if {'-h', '--help'} & set(own):
         # Takes a while to gather.
         parser.epilog = _epilog()
@@ -140,7 +145,7 @@ def _parser(own) -> argparse.ArgumentParser:
         help='of the bag (default zstd)')
     add('-e', '--error', action='store_true',
         help='estimate the error at the end, by a finer second run')
-    add('-q', '--quiet', action='store_true', help='print errors only')
+    add('-q', '--quiet', action='store_true', help='print errors, and what -e is for, only')
     return parser
 
 
@@ -159,9 +164,8 @@ def _seconds(text) -> float:
         value = float(text)
     except ValueError:
         value = -1.0
-    if not 0.0 < value <= 1e9:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds above 0 and up to "
-                                         '1e9')
+    if not 1e-9 <= value <= 1e9:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds from 1e-9 to 1e9")
     return value
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import sys
 import webbrowser
 
+from .command_line import CommandLine
 from .ros_arguments import split
 from .signals import Signals
 
@@ -184,11 +185,9 @@ def _remedy(error) -> str:
     return 'install or source ROS 2 Jazzy'
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> CommandLine:
     """Return the parser of the command line, without the part that belongs to ROS."""
-    parser = argparse.ArgumentParser(
-        'view', description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = CommandLine('view', _DESCRIPTION, _EPILOG)
     add = parser.add_argument
     add('file', metavar='FILE', nargs='?', help='the bag of a recorded run')
     add('--newest', action='store_true', help='show the bag in runs/ that was changed last')

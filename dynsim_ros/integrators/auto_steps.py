@@ -20,8 +20,9 @@ from .stiffness import held_back_step
 # The first step that a stiff method tries, over what it has to be to be worth it.
 _AMBITION = 1.6
 # A run is calm when no velocity is above this part of the tolerance [1/s]; it is then at rest
-# where the air stops what still moves within the inverse of that.
-_CALM = 1e-2
+# where the air stops what still moves within the inverse of that, and springs pull nothing farther
+# than a part of the tolerance.
+_CALM, _NEAR = 1e-2, 0.1
 # Stiff steps in a row after which a trial was a success.
 _SUCCESS = 20
 
@@ -112,11 +113,13 @@ class AutoSteps(Walk):
 
     def _fall_asleep(self):
         """Hold the state from here on, if it is one of rest."""
-        clock = self.explicit.clock
-        if comes_to_rest(self._model, self._drive, self.explicit.states[1], 1.0 / _CALM):
-            self._asleep_at = clock[BASE] + clock[END]
+        steps = self.explicit
+        if comes_to_rest(self._model, self._drive, steps.states[1], 1.0 / _CALM,
+                         _NEAR * steps.tolerance):
+            self._asleep_at = steps.clock[BASE] + steps.clock[END]
         else:
-            self.explicit.calm = 0.0
+            # What is left may be near enough once it is that much slower.
+            steps.calm *= 0.1
 
     def _hand_back(self):
         if self.stiff.counts[STEPS] - self._entered >= _SUCCESS:

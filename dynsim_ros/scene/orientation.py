@@ -42,6 +42,7 @@ def unit(q):
     w, x, y, z = q
     norm = math.sqrt(w * w + x * x + y * y + z * z)
     if not abs(norm - 1.0) <= NORM_TOLERANCE:
-        raise ValueError(f'its norm is {norm:.6g}, a unit quaternion is needed')
+        raise ValueError(f'its norm is {norm:.6g}, a unit quaternion is needed, 1 within '
+                         f'{NORM_TOLERANCE:g}')
     # Already of norm 1 to the last bit or two: dividing again would move it.
     return q if abs(norm - 1.0) < 4e-16 else tuple(a / norm for a in q)

@@ -70,7 +70,9 @@ class Quantity:
             try:
                 return unit(numbers)
             except ValueError as error:
-                raise SceneError(f'{name}: {list(numbers)} is no orientation: {error}') from None
+                w, *xyz = numbers
+                raise SceneError(f'{name}: x, y, z, w {[*xyz, w]} is no orientation: '
+                                 f'{error}') from None
         return numbers
 
     def _number(self, name, value):

@@ -4,16 +4,19 @@
 How far the end of a run is from the exact motion: from a second run, computed more exactly.
 
 With an error-controlled method the second run has a hundredth of the tolerance, with a method of
-fixed step half the step; the difference of the two, with Richardson's factor for the latter, is
-the estimate. Where rounding, not the method, makes the error, both runs share part of it.
+fixed step half the step, also where commands set either; the difference of the two, with
+Richardson's factor for the latter, is the estimate. Where rounding, not the method, makes the
+error, both runs share part of it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 import math
 
 import numpy as np
 
+from .commands import SetValues
 from .offline import OfflineRun
+from .settings import SECOND
 from .simulator import Simulator
 from ..integrators import method_named
 from ..physics.rotation import quaternion_norm
@@ -37,6 +40,8 @@ class ErrorEstimate:
     angular_velocity: float | None
 
     def __str__(self):
+        if not any(vars(self).values()):
+            return 'rounding alone, a run to be more exact ends in the same state'
         text = f'position {self.position:.1e} m, velocity {self.velocity:.1e} m/s'
         if self.orientation is not None:
             text += (f', orientation {self.orientation:.1e} rad, '
@@ -49,19 +54,55 @@ def estimate_error(simulator, commands, duration):
     Return the ErrorEstimate of a run from its start to a duration [s].
 
     simulator: as it was at the start; commands: as OfflineRun takes them. Runs the motion twice.
+    Raises ValueError where no run can be more exact.
     """
     settings = simulator.initial_settings
+    factor = max(_factor(each) for each in _settings_used(settings, commands, duration))
+    finer = [(time_ns, SetValues(command.values | _finer(command.values))
+              if isinstance(command, SetValues) else command) for time_ns, command in commands]
+    return _difference(
+        _end(simulator.initial_scene, settings, commands, duration),
+        _end(simulator.initial_scene, replace(settings, **_finer(vars(settings))), finer,
+             duration), factor)
+
+
+def _finer(values):
+    """Return the tolerance and the step for a run to be more exact, of those among values."""
+    finer = {}
+    if 'tolerance' in values:
+        finer['tolerance'] = max(values['tolerance'] * _TIGHTER, _SMALLEST_TOLERANCE)
+    if 'step' in values:
+        finer['step'] = max(values['step'] / 2.0, _SMALLEST_STEP)
+    return finer
+
+
+def _settings_used(settings, commands, duration):
+    """Yield the Settings at the start of a run, and after each command that sets some."""
+    yield settings
+    names = {field.name for field in fields(settings)}
+    for time_ns, command in commands:
+        if isinstance(command, SetValues) and time_ns < duration * SECOND:
+            values = {name: command.values[name] for name in names & command.values.keys()}
+            if values:
+                settings = replace(settings, **values)
+                yield settings
+
+
+def _factor(settings):
+    """
+    Return the error over the difference from a run to be more exact.
+
+    Raises ValueError where there is none.
+    """
     method = method_named(settings.integrator)
-    factor = 1.0
     if method.advance is None:
-        finer = replace(settings, tolerance=max(settings.tolerance * _TIGHTER,
-                                                _SMALLEST_TOLERANCE))
-    else:
-        finer = replace(settings, step=max(settings.step / 2.0, _SMALLEST_STEP))
-        factor = 2.0 ** method.order / (2.0 ** method.order - 1.0)
-    ends = [_end(simulator.initial_scene, each, commands, duration)
-            for each in (settings, finer)]
-    return _difference(*ends, factor)
+        if settings.tolerance <= _SMALLEST_TOLERANCE:
+            raise ValueError(f'tolerance {settings.tolerance:g} is the smallest one')
+        return 1.0
+    if settings.step < 2.0 * _SMALLEST_STEP:
+        raise ValueError(f'half of the step {settings.step:g} s would be below '
+                         f'{_SMALLEST_STEP:g} s, the shortest one')
+    return 2.0 ** method.order / (2.0 ** method.order - 1.0)
 
 
 def _end(scene, settings, commands, duration):

@@ -133,6 +133,7 @@ def test_an_error_bar(tmp_path, capsys):
     # of itself there is none
     lines = said(capsys, 0, path, '--step', '0.02')
     assert all(float(line.split()[-5]) == 0.0 for line in lines[1:])
+    assert '--tolerance: means nothing to rk4' in said(capsys, 2, path, '--tolerance', '1e-12')
 
 
 def test_never_overwrites(bag, tmp_path, capsys):
@@ -153,6 +154,9 @@ def test_never_overwrites(bag, tmp_path, capsys):
     (['--set', 'gravty=1'], "did you mean 'gravity'?"),
     (['--integrator', 'rk5'], "integrator: 'rk5' is not known; did you mean 'rk4'?"),
     (['--tolerance', '2'], 'tolerance: 2 is out of range'),
+    (['--integrator', 'auto', '--step', '0.01'],
+     '--step: means nothing to auto, which goes by its tolerance; give --tolerance'),
+    (['--from', '0.005', '--until', '0.006'], 'holds no state from 0.005 s to 0.006 s'),
     (['--scene', 'sphere'], "did you mean 'sphere_on_spring'?"),
     (['-c', 'nowhere.yaml'], 'nowhere.yaml: cannot be read'),
     (['--from', '0.6', '--set', 'gravity=1'], '--from: nothing follows 0.6 s')])

@@ -92,6 +92,9 @@ def test_never_overwrites(tmp_path, capsys):
     (['spinning_box', '--set', 'box.mass=!!timestamp x'],
      'box.mass=!!timestamp x: is not valid YAML'),
     (['spinning_box', '--set', 'box.mass=[1'], 'is not valid YAML'),
+    (['spinning_box', '--set', 'box.mass=1', 'box.mass=2'], 'box.mass is set twice'),
+    (['spinning_box', '--set', 'box.orientation=[0.5, 0, 0, 0]'],
+     'box.orientation: x, y, z, w [0.5, 0.0, 0.0, 0.0] is no orientation: its norm is 0.5'),
     (['spinning_box', '--set', 'rate=0'], 'rate: 0 Hz is out of range'),
     (['spinning_box', '-c', 'nowhere.yaml'], 'nowhere.yaml: cannot be read'),
     (['spinning_box', '-o', '/dev/null/x.mcap'],
@@ -179,3 +182,17 @@ def test_nobody_looks_any_more(tmp_path):
     assert (process.stderr.read(), process.wait(60)) == ('', 0)
     found, _ = bag(path)
     assert len(found['/dynsim/box/pose']) == 101
+
+
+def test_estimated_error_is_told_also_quietly(tmp_path, capsys):
+    path = str(tmp_path / 'run.mcap')
+    assert main(['particle_on_spring', '-d', '1', '-o', path, '-q', '-e']) == 0
+    assert capsys.readouterr().out.startswith('error at the end, estimated: position ')
+
+
+def test_no_error_can_be_estimated_of_the_shortest_steps(tmp_path, capsys):
+    assert main(['particle_on_spring', '-d', '1e-3', '-o', str(tmp_path / 'run.mcap'), '-q', '-e',
+                 '--set', 'integrator=rk4', 'step=1e-7', 'rate=1000']) == 2
+    assert capsys.readouterr().err == (
+        'error: --error: nothing more exact to compare the run with: half of the step 1e-07 s '
+        'would be below 1e-07 s, the shortest one\n')

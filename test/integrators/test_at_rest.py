@@ -94,7 +94,8 @@ def lasts(text):
     """Tell whether a scene may be held where it hangs."""
     scene = parse_scene(text.replace(START, f'position: [0, 0, {HANGING}]'))
     model = build_model(scene)
-    return comes_to_rest(model, undisturbed_drive(scene), initial_state(scene, model), 100.0)
+    return comes_to_rest(model, undisturbed_drive(scene), initial_state(scene, model), 100.0,
+                         1e-10)
 
 
 @pytest.mark.parametrize('place, is_held', [
@@ -102,3 +103,49 @@ def lasts(text):
     ('position: [0, 0, 2.5019], orientation: {axis: [1, 0, 0], angle: 3.141592653589793}', False)])
 def test_below_the_anchor_and_on_top_of_it(place, is_held):
     assert lasts(SPHERE.replace(START, place)) == is_held
+
+
+BEAD = """
+air: {linear_drag: 1}
+anchors: {left: {position: [-1, 0, 0]}, right: {position: [1, 0, 0]}}
+bodies:
+  bead: {shape: particle, mass: 1, position: [0, %g, 0]}
+  loose: {shape: particle, mass: 1, position: [0, 0, 1]}
+springs:
+  a: {from: left, to: bead, stiffness: %g, natural_length: 0.5}
+  b: {from: right, to: bead, stiffness: %g, natural_length: 0.5}"""
+
+
+def crept(displacement, stiffness, tolerance, duration):
+    """Return where drag lets the bead creep to, and where it has to be in closed form [m]."""
+    simulator = Simulator(parse_scene(BEAD % (displacement, stiffness, stiffness)),
+                          tolerance=tolerance, rate=0.1)
+    simulator.run(duration)
+    # Both springs are twice as long as by nature: half of their stiffness acts across them.
+    root = np.sqrt(1.0 - 4.0 * stiffness)
+    slow, fast = -2.0 * stiffness / (1.0 + root), -0.5 * (1.0 + root)
+    return simulator.snapshot().position('bead')[1], displacement / (slow - fast) * (
+        slow * np.exp(fast * duration) - fast * np.exp(slow * duration))
+
+
+@pytest.mark.parametrize('displacement, stiffness, tolerance', [
+    (1e-3, 1e-6, 1e-3), (1e-7, 1e-4, 1e-9), (1e-7, 1e-6, 1e-9)])
+def test_what_creeps_is_not_held(displacement, stiffness, tolerance):
+    """Strong drag makes slow what soft springs still move far."""
+    for duration in (1e2, 1e4, 1e5):
+        found, expected = crept(displacement, stiffness, tolerance, duration)
+        assert abs(found - expected) <= tolerance
+
+
+@pytest.mark.parametrize('displacement, is_held', [(1e-11, True), (1e-9, False)])
+def test_what_has_crept_home_is_held(displacement, is_held):
+    assert lasts(BEAD % (displacement, 1e-3, 1e-3)) == is_held
+
+
+@pytest.mark.parametrize('force, tolerance', [(5e-6, 1e-3), (5e-12, TOLERANCE)])
+def test_what_is_pushed_is_not_held(force, tolerance):
+    simulator = Simulator(parse_scene(BEAD % (0.0, 1e-3, 1e-3)), tolerance=tolerance, rate=1,
+                          wrench_timeout=0.0)
+    simulator.apply(PushBody('loose', (force, 0, 0)))
+    simulator.run(2e4)
+    assert abs(simulator.snapshot().position('loose')[0] - force * (2e4 - 1.0)) <= tolerance

@@ -28,6 +28,8 @@ _add, _dot, _norm, _rotate, _scale, _subtract = (plain(each, **QUICKLY) for each
 # An eigenvalue that is above minus this, relative to the stiffnesses, counts as not negative: in
 # an hour nothing visible comes of rounding there.
 _NEUTRAL = 1e-9
+# A part of forces that is so small beside them is left of them by rounding.
+_HARDLY = 0.01
 _EYE = np.eye(3)
 
 
@@ -61,18 +63,40 @@ def is_equilibrium(model, drive, start, holds):
     return not any(left) or _is_rounding(model, drive, start, holds, left)
 
 
-def comes_to_rest(model, drive, state, longest):
+def comes_to_rest(model, drive, state, longest, near):
     """
-    Return whether what still moves in a state (size,) is to come to rest where it is.
+    Return whether what still moves in a state (size,) is to come to rest next to where it is.
 
-    It is where the place is stable and the air stops each body within `longest` [s].
+    It is where the place is stable, the air stops each body within `longest` [s], and what is left
+    of forces pulls none farther than `near` [m, rad] until springs balance it: strong drag may
+    make a motion slow that is to go far.
     """
     holds = holds_of(model, drive.anchors)
     if any(hold.anchor is not None and any(hold.anchor.velocity) for hold in holds):
         return False
     if _is_turned(model, drive) or not _is_stopped(model, longest):
         return False
-    return _is_stable(model.rigid, holds, _bodies(model, state))
+    curvature, scaling = _scaled_curvature(model.rigid, holds, _bodies(model, state))
+    factor = None if curvature is None else _factor(curvature)
+    if factor is None:
+        return False
+    left = scaling * np.array(_left(model, drive, state))
+    # The part of it to which springs do not answer, as far as they should be told apart.
+    unanswered = _NEUTRAL * _solved(factor, left)
+    if abs(unanswered).max() > _HARDLY * abs(left).max():
+        return False
+    return abs(scaling * _solved(factor, left - unanswered)).max() <= near
+
+
+def _left(model, drive, state):
+    """Return what is left of forces, then of moments, on all bodies if nothing moved."""
+    bodies, rigid = len(model.mass), model.rigid
+    torque_at = 6 * bodies + 4 * rigid
+    still, left = state.tolist(), [0.0] * len(state)
+    still[3 * bodies:6 * bodies] = [0.0] * (3 * bodies)
+    still[torque_at:torque_at + 3 * rigid] = [0.0] * (3 * rigid)
+    _apply_forces(model, drive._replace(works=None), 0.0, still, left)
+    return left[3 * bodies:6 * bodies] + left[torque_at:torque_at + 3 * rigid]
 
 
 def _is_stopped(model, longest):
@@ -155,19 +179,30 @@ def _is_stable(rigid, holds, things):
     if rigid == 0 and all(_stretch(hold, things) >= 0.0 for hold in holds):
         # Springs that pull do not let particles go anywhere.
         return True
+    curvature, _ = _scaled_curvature(rigid, holds, things)
+    return curvature is not None and _factor(curvature) is not None
+
+
+def _scaled_curvature(rigid, holds, things):
+    """
+    Return the second derivatives of springs' energy, in scaled displacements, and the scales.
+
+    (n, n) and (n,), None and None where there are no derivatives. What counts as not negative is
+    made positive.
+    """
     size = 3 * (len(things) + rigid)
     curvature, largest = np.zeros((size, size)), np.zeros(size)
     for hold in holds:
         more = _curvature(hold, rigid, things, size)
         if more is None:
-            return False
+            return None, None
         curvature += more
         largest += abs(more).diagonal()
     # one scale for all directions: in one that is neutral there is nothing but rounding
     largest = largest.reshape(-1, 3).max(axis=1).repeat(3)
     largest[largest == 0.0] = 1.0
     scaling = 1.0 / np.sqrt(largest)
-    return _is_positive(curvature * scaling * scaling[:, np.newaxis] + _NEUTRAL * np.eye(size))
+    return curvature * scaling * scaling[:, np.newaxis] + _NEUTRAL * np.eye(size), scaling
 
 
 def _way(hold, things):
@@ -210,13 +245,30 @@ def _curvature(hold, rigid, things, size):
     return more
 
 
-def _is_positive(matrix):
-    """Return whether a symmetric matrix has positive eigenvalues only, by Cholesky's method."""
-    matrix = matrix.copy()
-    for i in range(len(matrix)):
-        pivot = matrix[i, i]
+def _factor(matrix):
+    """
+    Return the upper triangle of a symmetric matrix by Cholesky's method; below it lies nothing.
+
+    None where an eigenvalue is not positive. Not by a library, as its last bits differ.
+    """
+    factor = matrix.copy()
+    for i in range(len(factor)):
+        pivot = factor[i, i]
         if not pivot > 0.0:
-            return False
-        row = matrix[i, i + 1:] / math.sqrt(pivot)
-        matrix[i + 1:, i + 1:] -= np.outer(row, row)
-    return True
+            return None
+        factor[i, i:] /= math.sqrt(pivot)
+        row = factor[i, i + 1:]
+        factor[i + 1:, i + 1:] -= np.outer(row, row)
+    return factor
+
+
+def _solved(factor, right):
+    """Return the solution of linear equations with a matrix of which _factor is known: (n,)."""
+    x = right.copy()
+    for i in range(len(x)):
+        x[i] /= factor[i, i]
+        x[i + 1:] -= factor[i, i + 1:] * x[i]
+    for i in reversed(range(len(x))):
+        x[i] /= factor[i, i]
+        x[:i] -= factor[:i, i] * x[i]
+    return x
