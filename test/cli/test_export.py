@@ -176,8 +176,9 @@ def test_times_that_are_no_numbers(bag, capsys, value):
     with pytest.raises(SystemExit) as caught:
         export.main([str(bag), '--start', value])
     assert caught.value.code == 2
-    assert capsys.readouterr().err.splitlines()[-1] == (
-        f"export: error: argument --start: '{value}' is not a number of seconds up to 1e9")
+    assert capsys.readouterr().err == (
+        f"error: argument --start: '{value}' is not a number of seconds up to 1e9; "
+        'export --help tells what there is\n')
 
 
 def test_a_bag_of_others(tmp_path):
