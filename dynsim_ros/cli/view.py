@@ -115,14 +115,28 @@ def _show_live(options, ros_args, signals) -> int:
 
         with new_remote(options.node) as (remote, node), spinning(node) as serve:
             patience = _PATIENCE_WITH_START if process else _PATIENCE
-            remote.find(serve, patience, has_ended)
+            try:
+                remote.find(serve, patience, has_ended)
+            except ValueError:
+                if has_ended():
+                    # It has said why.
+                    return _status(process.returncode)
+                raise
             scene = remote_scene(remote, options.scene)
             with serving(options.host, options.port, options.node) as server:
                 page = LivePage(server, remote, scene)
                 signals.hold()
                 _tell(server, options)
                 page.run(stopped, page.frame, serve)
-        return process.returncode if has_ended() else 0
+        return _status(process.returncode) if has_ended() else 0
+
+
+def _status(returncode: int) -> int:
+    """Return the exit status of the simulation; a signal that ended it is told."""
+    if returncode >= 0:
+        return returncode
+    print(f'error: the simulation was ended by signal {-returncode}', file=sys.stderr)
+    return 2
 
 
 def _warn(problem: str | None):

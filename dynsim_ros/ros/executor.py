@@ -10,6 +10,7 @@ spin() was seen to run at full load and fire no timer. It is used after it has b
 from functools import partial
 import time
 
+import rclpy
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.executors import Executor, SingleThreadedExecutor
@@ -28,18 +29,31 @@ _MOST_WORK = 0.008
 
 def new_executor(node: Node, fast=EventsExecutor) -> Executor:
     """Return an executor that serves a node; fast: the one to be used if it works, or None."""
-    if fast is not None:
-        executor = fast()
-        executor.add_node(node)
-        problem = _problem(executor, node)
-        if problem is None:
-            return executor
+    problem = None if fast is None else _tried(fast, node.context)
+    if problem is not None:
         node.get_logger().warning(f'{fast.__name__} {problem}; SingleThreadedExecutor is used')
-        executor.remove_node(node)
-        executor.shutdown()
-    executor = SingleThreadedExecutor()
+    executor = SingleThreadedExecutor() if fast is None or problem is not None else fast()
     executor.add_node(node)
     return executor
+
+
+def _tried(fast, context) -> str | None:
+    """
+    Return what is wrong with a kind of executor, in words, or None.
+
+    It is tried with a node of its own, to which nobody has requests that would disturb the trial,
+    or would be served before their time.
+    """
+    node = rclpy.create_node('_trial', context=context, use_global_arguments=False,
+                             enable_rosout=False, start_parameter_services=False)
+    executor = fast()
+    executor.add_node(node)
+    try:
+        return _problem(executor, node)
+    finally:
+        executor.remove_node(node)
+        executor.shutdown()
+        node.destroy_node()
 
 
 def _problem(executor: Executor, node: Node) -> str | None:

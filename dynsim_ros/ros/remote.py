@@ -12,10 +12,12 @@ import time
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped, WrenchStamped
 from rcl_interfaces.msg import ParameterEvent
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import qos_profile_parameter_events
+from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import SetBool, Trigger
 
 from .listener import Listener
@@ -31,6 +33,16 @@ class RemoteError(ValueError):
     """A simulation that does not answer; one line of text."""
 
 
+def _check_name(name):
+    """Raise RemoteError unless it is the full name of a node."""
+    try:
+        validate_full_topic_name(name)
+    except NameValidationException as error:
+        reason = str(error).splitlines()[0]
+        raise RemoteError(f"--node: '{name}' is no full name of a node, such as /dynsim: "
+                          f'{reason}') from None
+
+
 class RemoteSimulation:
     """
     The simulation node of a full name, such as '/dynsim'.
@@ -42,6 +54,7 @@ class RemoteSimulation:
 
     def __init__(self, node: Node, ears: Node, name: str,
                  changed: Callable[[Mapping], None] = lambda values: None):
+        _check_name(name)
         self.name = name
         self.changed = changed
         self.topics: dict[str, str] = {}

@@ -195,9 +195,9 @@ class Run:
         self.work['record'] += time.monotonic_ns() - published
 
     def _may_wait(self):
-        """Tell whether the run may wait for the disk: one that is to be faster than time."""
+        """Tell whether the run may wait for the disk: one in steps, or to be faster than time."""
         factor = self._options['real_time_factor']
-        return factor == 0.0 or factor > 1.0
+        return self.paused or factor == 0.0 or factor > 1.0
 
     def record(self, messages, rows=None):
         """Record {topic: CDR bytes}, and rows, at the present instant, if there is a bag."""

@@ -27,6 +27,9 @@ class Stepping:
         run = self._run
         if not run.paused:
             return False, 'not paused: call ~/pause with data true first'
+        if run.waiting:
+            return False, ('waiting for /clock: a step would have no time to be published and '
+                           'recorded with; start what publishes it')
         left = ticks
         while left > 0 and run.simulator.failure is None and not self._is_ending():
             wanted = run.ticks_to_wanted()

@@ -34,6 +34,14 @@ def test_options_that_do_not_go_together(capsys, arguments, reason):
     assert reason in error_of(capsys, *arguments)
 
 
+@pytest.mark.parametrize('name', ['', '/', '/dynsim/', '/9x', '/a b', '/a//b', '~/x', '{x}'])
+def test_what_is_no_name_of_a_node(capsys, name):
+    assert main(['--live', '--node', name]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: --node: '/")
+    assert "' is no full name of a node, such as /dynsim: Invalid" in line
+
+
 def test_what_is_no_bag(capsys, tmp_path):
     path = tmp_path / 'run.mcap'
     assert str(path) in error_of(capsys, path)

@@ -51,6 +51,10 @@ def heard(follower, connect):
     client.listen({'sphere/pose': POSE, '/diagnostics': DIAGNOSTICS})
     (array, *_) = client.more('/diagnostics')
     waiting = array.status[0].message, len(client.heard['sphere/pose'])
+    assert client.pause().success
+    step = client.step()
+    assert not step.success and step.message.startswith('waiting for /clock: ')
+    assert client.pause(False).success
     # what is commanded before the clock begins is part of the run all the same
     assert client.configure({'gravity': 5.0})[0].successful
     clock = Time0(client)

@@ -35,6 +35,17 @@ class Restless(SingleThreadedExecutor):
             super().spin_once(timeout_sec=0.0)
 
 
+class Private(SingleThreadedExecutor):
+    """Works; keeps the names of those whom it served."""
+
+    served = set()
+
+    def spin_once(self, timeout_sec=None):
+        """Serve, and take note of whom."""
+        self.served.update(node.get_name() for node in self.get_nodes())
+        super().spin_once(timeout_sec=timeout_sec)
+
+
 def kind_of(node, fast):
     executor = new_executor(node, fast)
     assert executor.get_nodes() == [node]
@@ -45,6 +56,11 @@ def kind_of(node, fast):
 
 def test_the_fast_one_works_here(node_here):
     assert kind_of(node_here, EventsExecutor) == 'EventsExecutor'
+
+
+def test_requests_to_the_node_are_not_served_while_it_is_tried(node_here):
+    assert kind_of(node_here, Private) == 'Private'
+    assert Private.served and node_here.get_name() not in Private.served
 
 
 @pytest.mark.parametrize('fast', [None, Deaf, Broken, Restless])
