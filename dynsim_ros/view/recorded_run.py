@@ -13,7 +13,7 @@ from .server import ViewError
 from .table import NUMBERS, Table
 from ..bag import load
 from ..bag.reader import open_bag
-from ..bag.run_names import RUN_METADATA, SCENE_ATTACHMENT
+from ..bag.run_names import RUN_METADATA, SCENE_ATTACHMENT, TOPIC_METADATA
 from ..scene import parse_scene, Scene, SceneError
 
 # What the topics of a run end with: others, such as commands, are of the same types.
@@ -50,8 +50,7 @@ def check_run(path, scene=None):
     with open_bag(path) as bag:
         scene = scene or _scene(bag)
         node = _node(bag, scene)
-        _must_have_poses(path, scene, node, [topic.removeprefix(f'{node}/')
-                                             for topic in bag.channels])
+        _must_have_poses(path, scene, node, _names(bag, node).values())
 
 
 def read_run(path, scene=None):
@@ -63,11 +62,19 @@ def read_run(path, scene=None):
     bag = load(path)
     scene = scene or _scene(bag)
     node = _node(bag, scene)
-    tables = {topic.removeprefix(f'{node}/'): Table(bag.time(topic), _numbers(bag[topic]))
-              for topic in bag if topic.startswith(f'{node}/') and topic.endswith(_ENDINGS)
-              and bag.channels[topic].type_name in NUMBERS}
+    tables = {topic: Table(bag.time(name), _numbers(bag[name]))
+              for name, topic in _names(bag, node).items()
+              if name in bag and topic.endswith(_ENDINGS)
+              and bag.channels[name].type_name in NUMBERS}
     _must_have_poses(path, scene, node, tables)
     return RecordedRun(scene, tables, bag.problem)
+
+
+def _names(bag, node):
+    """Return {name: topic relative to the node} of a bag, also where topics were remapped."""
+    remapped = {name: topic for topic, name in bag.metadata.get(TOPIC_METADATA, {}).items()}
+    return {name: remapped.get(name, name.removeprefix(f'{node}/')) for name in bag.channels
+            if name in remapped or name.startswith(f'{node}/')}
 
 
 def _must_have_poses(path, scene, node, topics):

@@ -6,10 +6,15 @@ import os
 import socket
 
 from bag_samples import write_sample
+from dynsim_ros.bag.run_sink import RunSink
 from dynsim_ros.bag.writer import BagWriter
 from dynsim_ros.cli.simulate import main as simulate
 from dynsim_ros.cli.view import main, warning_of
-from dynsim_ros.view.recorded_run import read_run
+from dynsim_ros.scene import load_scene
+from dynsim_ros.simulation import Simulator
+from dynsim_ros.simulation.offline import OfflineRun
+from dynsim_ros.view.recorded_run import check_run, read_run
+import numpy as np
 import pytest
 
 
@@ -113,3 +118,14 @@ def test_bag_that_is_cut_off_is_shown_as_far_as_it_goes(tmp_path):
     run = read_run(path, None)
     assert 0.5 < run.end < 4.5
     assert 'the file ends in the middle' in run.problem
+
+
+def test_topics_under_other_names_are_found(tmp_path):
+    simulator = Simulator(load_scene('sphere_on_spring'))
+    bag = RunSink(tmp_path / 'run.mcap', simulator, resolve=lambda topic: {
+        'sphere/pose': '/robot/pose'}.get(topic, f'/dynsim/{topic}'))
+    OfflineRun(simulator, [], bag).run(0.1)
+    bag.close()
+    check_run(tmp_path / 'run.mcap')
+    table = read_run(tmp_path / 'run.mcap').tables['sphere/pose']
+    np.testing.assert_array_equal(table.values[-1, :3], simulator.snapshot().position('sphere'))
