@@ -142,6 +142,17 @@ def test_what_has_crept_home_is_held(displacement, is_held):
     assert lasts(BEAD % (displacement, 1e-3, 1e-3)) == is_held
 
 
+@pytest.mark.parametrize('displacement, is_held', [(1e-11, True), (1e-9, False)])
+def test_all_bodies_have_to_be_near_where_they_come_to_rest(displacement, is_held):
+    """Springs of one do not hold another, however stiff they are."""
+    bodies, springs = (BEAD % (1e-11, 1e3, 1e3)).split('springs:')
+    soft = ''.join(f"""
+  {name}: {{from: {anchor}, to: slow, stiffness: 1.0e-3, natural_length: 0.5}}"""
+                   for name, anchor in (('c', 'left'), ('d', 'right')))
+    assert lasts(f'{bodies}  slow: {{shape: particle, mass: 1, position: [0, {displacement}, 0]}}'
+                 f'\nsprings:{springs}{soft}') == is_held
+
+
 @pytest.mark.parametrize('force, tolerance', [(5e-6, 1e-3), (5e-12, TOLERANCE)])
 def test_what_is_pushed_is_not_held(force, tolerance):
     simulator = Simulator(parse_scene(BEAD % (0.0, 1e-3, 1e-3)), tolerance=tolerance, rate=1,

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from .hold import holds_of
+from .hold import clusters, holds_of
 from .imbalance import is_unbalanced
 from ..closed_form import cancels, spring_size
 from ...physics import motion, rotation, vector
@@ -30,6 +30,8 @@ _add, _dot, _norm, _rotate, _scale, _subtract = (plain(each, **QUICKLY) for each
 _NEUTRAL = 1e-9
 # A part of forces that is so small beside them is left of them by rounding.
 _HARDLY = 0.01
+# So many bodies that springs connect are not held: to find out whether they may be takes too long.
+_MANY = 100
 _EYE = np.eye(3)
 
 
@@ -76,11 +78,23 @@ def comes_to_rest(model, drive, state, longest, near):
         return False
     if _is_turned(model, drive) or not _is_stopped(model, longest):
         return False
-    curvature, scaling = _scaled_curvature(model.rigid, holds, _bodies(model, state))
+    things, left = _bodies(model, state), _left(model, drive, state)
+    for members, rigid, held in clusters(len(things), model.rigid, holds):
+        if len(members) > _MANY:
+            return False
+        rows = [*members, *(len(things) + i for i in members[:rigid])]
+        if not _is_near(rigid, held, [things[i] for i in members], left[rows].ravel(), near):
+            return False
+    return True
+
+
+def _is_near(rigid, holds, things, left, near):
+    """Return whether forces and moments that are left, (n,), pull nothing farther than `near`."""
+    curvature, scaling = _scaled_curvature(rigid, holds, things)
     factor = None if curvature is None else _factor(curvature)
     if factor is None:
         return False
-    left = scaling * np.array(_left(model, drive, state))
+    left = scaling * left
     # The part of it to which springs do not answer, as far as they should be told apart.
     unanswered = _NEUTRAL * _solved(factor, left)
     if abs(unanswered).max() > _HARDLY * abs(left).max():
@@ -89,14 +103,15 @@ def comes_to_rest(model, drive, state, longest, near):
 
 
 def _left(model, drive, state):
-    """Return what is left of forces, then of moments, on all bodies if nothing moved."""
+    """Return (n, 3) what is left of forces, then of moments, on all bodies if nothing moved."""
     bodies, rigid = len(model.mass), model.rigid
     torque_at = 6 * bodies + 4 * rigid
     still, left = state.tolist(), [0.0] * len(state)
     still[3 * bodies:6 * bodies] = [0.0] * (3 * bodies)
     still[torque_at:torque_at + 3 * rigid] = [0.0] * (3 * rigid)
     _apply_forces(model, drive._replace(works=None), 0.0, still, left)
-    return left[3 * bodies:6 * bodies] + left[torque_at:torque_at + 3 * rigid]
+    return np.array(left[3 * bodies:6 * bodies]
+                    + left[torque_at:torque_at + 3 * rigid]).reshape(-1, 3)
 
 
 def _is_stopped(model, longest):
@@ -179,8 +194,11 @@ def _is_stable(rigid, holds, things):
     if rigid == 0 and all(_stretch(hold, things) >= 0.0 for hold in holds):
         # Springs that pull do not let particles go anywhere.
         return True
-    curvature, _ = _scaled_curvature(rigid, holds, things)
-    return curvature is not None and _factor(curvature) is not None
+    for members, turning, held in clusters(len(things), rigid, holds):
+        curvature, _ = _scaled_curvature(turning, held, [things[i] for i in members])
+        if curvature is None or _factor(curvature) is None:
+            return False
+    return True
 
 
 def _scaled_curvature(rigid, holds, things):

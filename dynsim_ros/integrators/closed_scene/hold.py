@@ -51,6 +51,36 @@ def holds_of(model, anchors):
     return holds
 
 
+def clusters(bodies, rigid, holds):
+    """
+    Yield (members, rigid, holds) for all bodies that springs connect with one another.
+
+    members: their indices, ascending, so that rigid ones come first; rigid: how many those are;
+    holds: with the place among the members instead of the index of a body.
+    """
+    chief = list(range(bodies))
+
+    def chief_of(i):
+        while chief[i] != i:
+            chief[i] = i = chief[chief[i]]
+        return i
+
+    for hold in holds:
+        if hold.p.body is not None and hold.q.body is not None:
+            chief[chief_of(hold.p.body)] = chief_of(hold.q.body)
+    members, held = {}, {}
+    for i in range(bodies):
+        members.setdefault(chief_of(i), []).append(i)
+    for hold in holds:
+        held.setdefault(chief_of(hold.end.body), []).append(hold)
+    for number, indices in members.items():
+        place = {index: i for i, index in enumerate(indices)}
+        yield indices, sum(i < rigid for i in indices), [
+            hold._replace(p=hold.p._replace(body=place.get(hold.p.body)),
+                          q=hold.q._replace(body=place.get(hold.q.body)))
+            for hold in held.get(number, ())]
+
+
 def _end(ends, s, anchors):
     zero = (0.0, 0.0, 0.0)
     if ends.anchor is not None:
