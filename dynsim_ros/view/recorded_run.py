@@ -64,7 +64,7 @@ def read_run(path, scene=None):
     node = _node(bag, scene)
     tables = {topic: Table(bag.time(name), _numbers(bag[name]))
               for name, topic in _names(bag, node).items()
-              if name in bag and topic.endswith(_ENDINGS)
+              if name in bag and f'/{topic}'.endswith(_ENDINGS)
               and bag.channels[name].type_name in NUMBERS}
     _must_have_poses(path, scene, node, tables)
     return RecordedRun(scene, tables, bag.problem)

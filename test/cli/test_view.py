@@ -127,5 +127,7 @@ def test_topics_under_other_names_are_found(tmp_path):
     OfflineRun(simulator, [], bag).run(0.1)
     bag.close()
     check_run(tmp_path / 'run.mcap')
-    table = read_run(tmp_path / 'run.mcap').tables['sphere/pose']
+    tables = read_run(tmp_path / 'run.mcap').tables
+    assert {'sphere/twist', 'sphere/wrench/net', 'energy'} < tables.keys()
+    table = tables['sphere/pose']
     np.testing.assert_array_equal(table.values[-1, :3], simulator.snapshot().position('sphere'))

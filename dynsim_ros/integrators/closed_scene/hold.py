@@ -75,7 +75,7 @@ def clusters(bodies, rigid, holds):
         held.setdefault(chief_of(hold.end.body), []).append(hold)
     for number, indices in members.items():
         place = {index: i for i, index in enumerate(indices)}
-        yield indices, sum(i < rigid for i in indices), [
+        yield indices, len([i for i in indices if i < rigid]), [
             hold._replace(p=hold.p._replace(body=place.get(hold.p.body)),
                           q=hold.q._replace(body=place.get(hold.q.body)))
             for hold in held.get(number, ())]
