@@ -101,15 +101,15 @@ def _compare(run, begin_ns, until_ns, quiet, signals) -> int:
     elapsed = time.monotonic() - started
     if signals.requested:
         return 130
-    if not outcome.states + outcome.hashes and outcome.difference is None:
+    if outcome.difference is not None:
+        progress.say(f'different from {outcome.difference}')
+        return 1
+    if not outcome.states + outcome.hashes:
         progress.clear()
         begin = run.begin_ns if begin_ns is None else begin_ns
         end = run.end_ns if until_ns is None else until_ns
         raise ValueError(f'{run.path} holds no state from {begin * 1e-9:.9g} s to '
                          f'{end * 1e-9:.9g} s: there is nothing to compare')
-    if outcome.difference is not None:
-        progress.say(f'different from {outcome.difference}')
-        return 1
     seconds = (outcome.time_ns - run.begin_ns) * 1e-9
     progress.say(f'identical, {outcome.states} states ({outcome.hashes} hashes, '
                  f'{outcome.commands} commands; {seconds:g} s lived again in {elapsed:.2f} s)')

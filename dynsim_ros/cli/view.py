@@ -100,7 +100,7 @@ def _export(options, scene) -> int:
 def _show_live(options, ros_args, signals) -> int:
     from .child import child
     from ..ros.context import ros_context, spinning
-    from ..ros.remote import new_remote
+    from ..ros.remote import new_remote, RemoteError
     from ..view.live import LivePage, remote_scene
     from ..view.server import serving
 
@@ -117,7 +117,7 @@ def _show_live(options, ros_args, signals) -> int:
             patience = _PATIENCE_WITH_START if process else _PATIENCE
             try:
                 remote.find(serve, patience, has_ended)
-            except ValueError:
+            except RemoteError:
                 if has_ended():
                     # It has said why.
                     return _status(process.returncode)

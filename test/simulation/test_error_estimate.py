@@ -7,7 +7,6 @@ from math import cos, sin
 from dynsim_ros.scene import parse_scene
 from dynsim_ros.simulation import SetValues, Simulator
 from dynsim_ros.simulation.error_estimate import estimate_error
-from dynsim_ros.simulation.offline import OfflineRun
 import pytest
 
 OSCILLATOR = """
@@ -17,20 +16,12 @@ springs: {spring: {from: origin, to: particle, stiffness: 1, natural_length: 0}}
 END = 10.0
 
 
-class Nobody:
-    """Looks at a run."""
-
-    def tick(self, simulator):
-        """Look at a tick."""
-
-    def command(self, time_ns, command):
-        """Look at a command."""
-
-
 def estimated_and_true(commands=(), **settings):
     """Return the estimated and the true errors of position [m] and velocity [m/s]."""
     simulator = Simulator(parse_scene(OSCILLATOR), **settings)
-    OfflineRun(simulator, commands, Nobody()).run(END)
+    for _, command in commands:
+        simulator.apply(command)
+    simulator.run(END)
     end, estimate = simulator.snapshot(), estimate_error(simulator, commands, END)
     return ((estimate.position, estimate.velocity),
             (abs(end.position('particle')[0] - cos(END)),

@@ -60,9 +60,8 @@ def is_equilibrium(model, drive, start, holds):
         return False
     if is_unbalanced(model, drive, start, holds):
         return False
-    left = [0.0] * len(start)
-    _apply_forces(model, drive._replace(works=None), 0.0, start.tolist(), left)
-    return not any(left) or _is_rounding(model, drive, start, holds, left)
+    left = _left(model, drive, start)
+    return not left.any() or _is_rounding(model, drive, start, holds, left.tolist())
 
 
 def comes_to_rest(model, drive, state, longest, near):
@@ -90,8 +89,7 @@ def comes_to_rest(model, drive, state, longest, near):
 
 def _is_near(rigid, holds, things, left, near):
     """Return whether forces and moments that are left, (n,), pull nothing farther than `near`."""
-    curvature, scaling = _scaled_curvature(rigid, holds, things)
-    factor = None if curvature is None else _factor(curvature)
+    factor, scaling = _factored_curvature(rigid, holds, things)
     if factor is None:
         return False
     left = scaling * left
@@ -146,21 +144,15 @@ def _bodies(model, start):
 
 
 def _is_rounding(model, drive, start, holds, left):
-    """Return whether what is left of forces and moments is rounding, in a stable place."""
-    bodies, rigid = len(model.mass), model.rigid
-    torque_at = 6 * bodies + 4 * rigid
+    """Return whether what is left, a list as of _left, is rounding, in a stable place."""
     if _is_turned(model, drive):
         return False
     things = _bodies(model, start)
     _add_sizes(model, drive, holds, things)
-    for i, thing in enumerate(things):
-        if not cancels(tuple(left[3 * (bodies + i):3 * (bodies + i) + 3]),
-                       thing.force_size):
-            return False
-        if i < rigid and not cancels(tuple(left[torque_at + 3 * i:torque_at + 3 * i + 3]),
-                                     thing.moment_size):
-            return False
-    return _is_stable(rigid, holds, things)
+    sizes = ([thing.force_size for thing in things]
+             + [thing.moment_size for thing in things[:model.rigid]])
+    return (all(cancels(tuple(total), size) for total, size in zip(left, sizes))
+            and _is_stable(model.rigid, holds, things))
 
 
 def _add_sizes(model, drive, holds, things):
@@ -194,19 +186,17 @@ def _is_stable(rigid, holds, things):
     if rigid == 0 and all(_stretch(hold, things) >= 0.0 for hold in holds):
         # Springs that pull do not let particles go anywhere.
         return True
-    for members, turning, held in clusters(len(things), rigid, holds):
-        curvature, _ = _scaled_curvature(turning, held, [things[i] for i in members])
-        if curvature is None or _factor(curvature) is None:
-            return False
-    return True
+    return all(
+        _factored_curvature(turning, held, [things[i] for i in members])[0] is not None
+        for members, turning, held in clusters(len(things), rigid, holds))
 
 
-def _scaled_curvature(rigid, holds, things):
+def _factored_curvature(rigid, holds, things):
     """
     Return the second derivatives of springs' energy, in scaled displacements, and the scales.
 
-    (n, n) and (n,), None and None where there are no derivatives. What counts as not negative is
-    made positive.
+    The former as _factor returns them, with what counts as not negative made positive, the latter
+    (n,); None and None where there are no derivatives.
     """
     size = 3 * (len(things) + rigid)
     curvature, largest = np.zeros((size, size)), np.zeros(size)
@@ -220,7 +210,8 @@ def _scaled_curvature(rigid, holds, things):
     largest = largest.reshape(-1, 3).max(axis=1).repeat(3)
     largest[largest == 0.0] = 1.0
     scaling = 1.0 / np.sqrt(largest)
-    return curvature * scaling * scaling[:, np.newaxis] + _NEUTRAL * np.eye(size), scaling
+    return _factor(curvature * scaling * scaling[:, np.newaxis]
+                   + _NEUTRAL * np.eye(size)), scaling
 
 
 def _way(hold, things):
